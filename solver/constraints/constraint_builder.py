@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..data.constants import STANDARD_GRAVITY
 from ..data.faults import NothingTouches, WrongAngle
 from ..data.requests import ForceRequest, Requests, TorqueLimit
@@ -56,7 +57,7 @@ def _torque_limit(
 ) -> Constraint:
     bodies = [context.jointed(request.name, bone) for bone in request.bones]
     span = context.interval(request.name, request.when)
-    angles, bounds = [], []
+    joints: list[list[int]] = []
     for body in bodies:
         joint = context.character.joints[body]
         mine = list(range(joint.first, joint.dofs.stop))
@@ -64,27 +65,33 @@ def _torque_limit(
             if request.dof >= len(mine):
                 raise WrongAngle(request.name, context.character.bodies[body].bone, len(mine))
             mine = mine[request.dof : request.dof + 1]
-        bound = request.bound
-        if bound is None:
-            bound = (request.share or 0.0) * _peak_torque(context, mine, span)
-        angles += mine
-        bounds += [max(bound, LEAST_TORQUE)] * len(mine)
+        joints.append(mine)
+    if request.bound is None:
+        peaks = (request.share or 0.0) * _peak_torques(context, joints, span)
+    else:
+        peaks = np.full(len(joints), request.bound)
+    angles = [angle for mine in joints for angle in mine]
+    bounds = np.repeat(np.maximum(peaks, LEAST_TORQUE), [len(mine) for mine in joints])
     function = TorqueFunction(context.character, transcription.points, angles, of_muscles=True)
     unit_nm = context.character.mass * STANDARD_GRAVITY
-    middle, half = request.value / unit_nm, np.array(bounds) / unit_nm
+    middle, half = request.value / unit_nm, bounds / unit_nm
     return Constraint(request.name, function, Bounds(middle - half, middle + half), *span)
 
 
-def _peak_torque(
-    context: EvaluationContext, angles: Sequence[int], span: tuple[float, float]
-) -> float:
-    """The fit's largest muscle torque at joint angles during a span of the new time, s; N·m."""
+def _peak_torques(
+    context: EvaluationContext, joints: Sequence[Sequence[int]], span: tuple[float, float]
+) -> FloatArray:
+    """(J,) the fit's largest muscle torque about any angle of each of J joints, given by their
+    angles, during a span of the new time, s; N·m."""
     motion = context.fitted
     t = motion.transcription
+    angles = [angle for mine in joints for angle in mine]
     function = TorqueFunction(t.character, t.points, angles, of_muscles=True)
     times = np.unique(context.reference_times(np.linspace(*span, 400)))
     state = State(t.character, t.layout, Instants(t.basis, times), motion.x)
-    return float(np.abs(function.value(state)).max()) * t.character.mass * STANDARD_GRAVITY
+    largest = np.abs(function.value(state)).max(axis=0) * t.character.mass * STANDARD_GRAVITY
+    ends = np.cumsum([len(mine) for mine in joints])
+    return np.array([each.max() for each in np.split(largest, ends[:-1])])
 
 
 def _peak_limit(
