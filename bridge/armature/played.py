@@ -11,6 +11,7 @@ import numpy as np
 from ...solver.data.faults import BlendedAction, Fault, NoAction, UnreadStrips
 from ..accessors import IN_STRIP, assigned_action, mapped_strip, take_strips
 from ..action_slots import all_curves, alone
+from ..fake_users import free_copy
 from ..played_strips import (
     ALL_MUTED,
     MUTED,
@@ -105,7 +106,7 @@ def scene_copy(owner: bpy.types.Object, action: bpy.types.Action, name: str) -> 
     plays it sooner or later, slower or faster, or in part."""
     copy = alone(action)
     copy.name = name
-    copy.use_fake_user = False
+    free_copy(copy)
     time = strip_time(owner, action)
     if time is None:
         return copy

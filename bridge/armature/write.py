@@ -12,6 +12,7 @@ from mathutils import Matrix, Vector
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import PoseTrack
 from ..accessors import armature_data, current_action, current_scene, mapped_strip, pose_of, present
+from ..fake_users import guard
 from . import fcurves
 from .channels import channels, proper
 from .incremental import Incremental, complete, sample_incrementally
@@ -66,7 +67,7 @@ def write_incrementally(
     finally:
         if not whole:  # cancelled in between: half an action is of no use to anybody
             bpy.data.actions.remove(action)
-    recorded.use_fake_user = True
+    guard(recorded)
     return action
 
 

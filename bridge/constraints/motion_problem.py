@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from math import isclose
 from types import SimpleNamespace
 from typing import Any
 
@@ -43,6 +44,7 @@ _KEPT = (
 )
 _METRES_PER_MM = 1e-3
 _UNMOVED = 1e-5  # Blender units
+SAME_RATE = 1e-6  # relative; what a scene stores is float32
 _SAME_START = 2.0  # frames; how far apart two analyses may see the same contact begin
 _SAME_PLACE = 0.01  # Blender units
 
@@ -88,6 +90,13 @@ def analysis_is_of(settings: HangtimeSettings, recording: Recording) -> bool:
         settings.analysed == analysis_key(settings, recording, grid, named=named)
         for grid, named in ((POSE_TOLERANCE, False), (POSE_TOLERANCE, True), (0.0, True))
     )
+
+
+def rates_since(settings: HangtimeSettings) -> tuple[float, float] | None:
+    """The scene's frames per second when the recording was analysed, and now; None where they are
+    the same, or an earlier version did not keep them."""
+    before, now = float(settings.analysed_rate), frames_per_second(current_scene())
+    return (before, now) if before and not isclose(before, now, rel_tol=SAME_RATE) else None
 
 
 def repaired_since(settings: HangtimeSettings) -> bool:
@@ -287,7 +296,7 @@ def write_analysis(settings: HangtimeSettings, recording: Recording, found: Anal
     metres = metres_per_unit(current_scene())
     first, rate = span_of(settings, recording)[0], frames_per_second(current_scene())
     settings.measured_height = found.height
-    settings.analysed = analysis_key(settings, recording)
+    settings.analysed, settings.analysed_rate = analysis_key(settings, recording), rate
     unseen = [[first + u.start * rate, first + u.end * rate] for u in found.schedule.unseen]
     settings.unseen = json.dumps(unseen) if unseen else ""
     for stance, (name, axes) in zip(

@@ -32,6 +32,7 @@ from ..controls.control_rig import (
 from ..controls.driven import is_driven
 from ..controls.kept import KeptByControls, kept_by
 from ..controls.targets import targets_of
+from ..fake_users import guard
 from ..keys.bezier_keys import splice_bezier
 from ..properties.settings import settings_of
 from ..rows.choices import LoopRoot
@@ -134,7 +135,7 @@ def write_loop(
     finally:
         if not whole:  # cancelled in between: half an action is of no use to anybody
             bpy.data.actions.remove(action)
-    recorded.use_fake_user = True
+    guard(recorded)
     return action, kept
 
 

@@ -117,6 +117,7 @@ class HangtimeSettings(bpy.types.PropertyGroup):
 
     fit_quality: hidden(text())
     analysed: hidden(text())  # digest
+    analysed_rate: hidden(number())  # frames/s of the scene then; 0 where no one kept it
     unseen: hidden(text())  # JSON: [first, last frame] of each span that something unseen carries
     repairs: hidden(text())  # JSON: those that count, see bridge/repairs
     findings: bpy.props.CollectionProperty(type=HangtimeFinding, override=OVERRIDABLE_LIST)

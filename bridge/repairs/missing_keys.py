@@ -14,6 +14,7 @@ from ..accessors import assigned_action, current_scene, play_to_end, source_of
 from ..action_slots import alone, span_of
 from ..armature import fcurves
 from ..armature.actions import recorded_action, show
+from ..fake_users import free_copy, guard, unguard
 from ..played_strips import played_strip
 from ..properties.settings import action_settings, settings_of
 from .stored import FRAMES, findings
@@ -50,6 +51,8 @@ def put_in(
     play_to_end(current_scene(), end, span_of(made)[1])
     if shown != recorded and not shown.users:  # nothing was made of what was filled before
         bpy.data.actions.remove(shown)
+        if made == recorded:
+            unguard(recorded)
 
     def now(frame: float) -> int:
         return round(_filled(_recorded(frame, before), missing))
@@ -66,7 +69,8 @@ def _copied(
 ) -> bpy.types.Action:
     made = alone(recorded)
     made.name = NAME.format(recorded.name)
-    recorded.use_fake_user, made.use_fake_user = True, False
+    free_copy(made)
+    guard(recorded)
     action_settings(made).unfilled = recorded
     if made.use_frame_range:
         made.frame_start = _filled(made.frame_start, missing)

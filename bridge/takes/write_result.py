@@ -17,6 +17,7 @@ from ..armature.played import in_scene_time, scene_copy
 from ..armature.strips import lay_strips, strips_of
 from ..armature.write import write_incrementally
 from ..controls.driven import is_driven
+from ..fake_users import guard
 from ..properties.settings import settings_of
 from ..rows.choices import After, WrittenAs
 from .difference import difference_of
@@ -169,7 +170,7 @@ def _write(
     finally:
         if not whole:  # cancelled in between: half an action is of no use to anybody
             bpy.data.actions.remove(action)
-    recorded.use_fake_user = True
+    guard(recorded)
     return action, written
 
 

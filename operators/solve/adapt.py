@@ -15,6 +15,8 @@ from ...bridge.constraints.motion_problem import (
     analysis_is_of,
     analysis_key,
     problem_of,
+    rates_since,
+    repaired_since,
     span_of,
     wanted_range,
 )
@@ -35,7 +37,7 @@ from ...bridge.takes.write_result import (
 )
 from ...bridge.worker_client import shared
 from ...solver.body.anatomy import map_anatomy
-from ...solver.data.faults import ChangedMeanwhile, DrivenBones, HeldBones
+from ...solver.data.faults import ChangedMeanwhile, DrivenBones, HeldBones, RateChanged
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.solver_options import SolverOptions
 from ...solver.data.status import Status
@@ -173,14 +175,13 @@ class UseBestOperator(TaskOperator, bpy.types.Operator):
 def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     """The motion problem that the settings state, with the recording as it is.
 
-    Raises any Fault of reading and of a rig that cannot be written to, and ChangedMeanwhile where
-    it is not what was analysed.
+    Raises any Fault of reading and of a rig that cannot be written to, and RateChanged or
+    ChangedMeanwhile where it is not what was analysed.
     """
     armature = required_armature(context)
     settings = settings_of(armature)
     recording = yield from read_wanted(armature)
-    if not analysis_is_of(settings, recording):
-        raise ChangedMeanwhile(armature.name, while_solving=False)
+    _require_analysed(armature, recording)
     options = result_options(settings)
     require_return_after(options, span_of(settings, recording)[1])
     _require_loopable(armature)
@@ -192,6 +193,17 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     if options.written_as is WrittenAs.SLOT and not apart:  # those are actions of their own
         require_slot(armature)
     return Asked(armature.name, armature.session_uid, recording, problem, scene)
+
+
+def _require_analysed(armature: bpy.types.Object, recording: Recording) -> None:
+    """Raises RateChanged, ChangedMeanwhile."""
+    settings = settings_of(armature)
+    if analysis_is_of(settings, recording):
+        return
+    rates = None if repaired_since(settings) else rates_since(settings)  # which sets the clock, too
+    if rates is not None:
+        raise RateChanged(*rates, while_solving=False)
+    raise ChangedMeanwhile(armature.name, while_solving=False)
 
 
 def require_writable(

@@ -6,6 +6,7 @@ from ...bridge.accessors import current_action, present, source_of
 from ...bridge.action_slots import lost_slot
 from ...bridge.armature.actions import recorded_action, show
 from ...bridge.armature.strips import remove_strips
+from ...bridge.fake_users import unguard
 from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.takes.takes import bake_shown, results_from
 from ...bridge.takes.write_result import remove_slot
@@ -215,6 +216,8 @@ class DiscardOperator(_OfSettledResult, bpy.types.Operator):
             remove_strips(each, result)
         remove_slot(result)
         bpy.data.actions.remove(result)
+        if recorded is not None and not results_from(recorded):
+            unguard(recorded)
         settings.adapted = None  # the edit at work is no other result's
         settings.status = ""
         self.report({"INFO"}, f"Discarded {name}")

@@ -1,6 +1,7 @@
 """Writes an answer of the solver as a result: an action, its strip or slot, marks and report."""
 
 from collections.abc import Generator, Sequence
+from math import isclose
 
 import bpy
 
@@ -10,8 +11,10 @@ from ...bridge.armature.actions import (
     recorded_action,
 )
 from ...bridge.armature.incremental import Incremental, complete
+from ...bridge.armature.poses import frames_per_second
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
+from ...bridge.constraints.motion_problem import SAME_RATE
 from ...bridge.constraints.standing import missed_contacts
 from ...bridge.constraints.status import write_status
 from ...bridge.controls.driven import is_driven
@@ -44,7 +47,7 @@ from ...bridge.takes.write_result import (
     write_adapted_incrementally,
 )
 from ...solver.body.proportions import changed_recording
-from ...solver.data.faults import ChangedMeanwhile, Fault
+from ...solver.data.faults import ChangedMeanwhile, Fault, RateChanged
 from ...solver.data.recording import PoseTrack, Recording, same_motion
 from ...solver.data.solver_options import Method
 from ...solver.worker.protocol import Adapted
@@ -79,7 +82,8 @@ MARKERS_LEFT_OUT = (
 
 
 def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
-    """Writes an answer as a new action; returns how it went. Raises ChangedMeanwhile.
+    """Writes an answer as a new action; returns how it went. Raises RateChanged,
+    ChangedMeanwhile.
 
     Surfaces that changed meanwhile do not void it: it says that it is not about them any more.
     """
@@ -246,7 +250,11 @@ def _note(
 
 
 def _unchanged(asked: Asked) -> Generator[None, None, bpy.types.Object]:
-    """The armature, if it and its recording are what they were. Raises ChangedMeanwhile."""
+    """The armature, if it and its recording are what they were. Raises RateChanged,
+    ChangedMeanwhile."""
+    before, rate = asked.recording.rate, frames_per_second(current_scene())
+    if not isclose(before, rate, rel_tol=SAME_RATE):
+        raise RateChanged(before, rate, while_solving=True)
     armature = next((o for o in bpy.data.objects if o.session_uid == asked.uid), None)
     if armature is not None and armature.mode != "EDIT" and recorded_action(armature) is not None:
         frames = asked.recording.frames

@@ -82,7 +82,7 @@ def _variant(fault: Fault) -> int:
             return max(i for i, each in enumerate((True, *more)) if each)
         case faults.UnknownObject():
             return bool(fault.known)
-        case faults.ChangedMeanwhile():
+        case faults.ChangedMeanwhile() | faults.RateChanged():
             return fault.while_solving
     raise TypeError(f"which words are for {type(fault).__name__}?")
 

@@ -262,11 +262,19 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.NameMissing: "A constraint ({kind}) has no name; give it one in the list.",
     faults.WorkerDied: "The solver stopped without an answer ({detail}); nothing was changed. Try "
     "again, and report it if it happens twice.",
+    faults.RateChanged: (
+        "Nothing was done, because the scene's frame rate changed from {before:.5g} to {now:.5g} "
+        "frames a second since the analysis, and the recording plays at another speed; set it back "
+        "to {before:.5g} (Output > Format > Frame Rate), or press Analyze again.",
+        "The result was thrown away, because the scene's frame rate changed from {before:.5g} to "
+        "{now:.5g} frames a second while it was solved; set it back to {before:.5g} (Output > "
+        "Format > Frame Rate) and try again, or press Analyze.",
+    ),
     faults.ChangedMeanwhile: (
-        "Nothing was done, because the armature “{armature}” or its keys changed since the "
-        "analysis; press Analyze again.",
-        "The result was thrown away, because the armature “{armature}” or its keys changed since "
-        "the analysis; press Analyze again.",
+        "Nothing was done, because the armature “{armature}”, its keys or its repairs changed "
+        "since the analysis; press Analyze again.",
+        "The result was thrown away, because the armature “{armature}”, its keys or its repairs "
+        "changed since the analysis; press Analyze again.",
     ),
     faults.BadDimensions: "The figure cannot be reduced to {given} dimensions; choose from 1 to "
     "{most}, or leave them out to have them chosen.",

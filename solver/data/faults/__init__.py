@@ -34,6 +34,7 @@ from .recordings import OddHeight as OddHeight
 from .recordings import OddScale as OddScale
 from .recordings import OptionNotTaken as OptionNotTaken
 from .recordings import OutsideKeys as OutsideKeys
+from .recordings import RateChanged as RateChanged
 from .recordings import TextCure as TextCure
 from .recordings import Treadmill as Treadmill
 from .recordings import UnknownClipFormat as UnknownClipFormat

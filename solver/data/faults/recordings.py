@@ -288,6 +288,19 @@ class UnknownContactName(Fault):
 
 
 @dataclass
+class RateChanged(Fault):
+    """The scene plays the recording at another frame rate than when it was analysed, or sent to be
+    solved: another motion.
+
+    while_solving: whether a result had to be thrown away for it.
+    """
+
+    before: float  # frames/s
+    now: float
+    while_solving: bool
+
+
+@dataclass
 class ChangedMeanwhile(Fault):
     """The armature, its action or its keys are no longer what was analysed or sent to be solved.
 

@@ -124,6 +124,24 @@ def test_a_result_is_discarded_and_the_edit_stays(adapted: bpy.types.Object) -> 
     assert not bpy.ops.hangtime.discard.poll()
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("kept", [False, True])
+def test_the_last_discard_leaves_the_recording_its_own_fake_user(
+    analysed: bpy.types.Object, kept: bool
+) -> None:
+    recorded = current_action(analysed)
+    recorded.use_fake_user = kept
+    for _ in range(2):
+        assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+        assert recorded.use_fake_user
+        assert bpy.ops.hangtime.show_recording() == {"FINISHED"}
+    for left in (True, kept):
+        bpy.ops.hangtime.show_adapted()
+        assert bpy.ops.hangtime.discard() == {"FINISHED"}
+        assert recorded.use_fake_user == left
+    assert "hangtime_guarded" not in recorded
+
+
 def test_a_linked_copy_that_discards_leaves_the_figure(adapted: bpy.types.Object) -> None:
     result = current_action(adapted)
     recording = result.hangtime.recording

@@ -19,7 +19,7 @@ from hangtime.operators.solve.session import Asked, session
 from hangtime.operators.solve.solving import SolveState, Solving
 from hangtime.operators.solve.task import Task, TaskOperator
 from hangtime.operators.solve.write_answer import write_answer
-from hangtime.solver.data.faults import ChangedMeanwhile, NoArmature
+from hangtime.solver.data.faults import ChangedMeanwhile, NoArmature, RateChanged
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import digest
 from hangtime.tests.blender.helpers import rigs
@@ -79,7 +79,7 @@ def test_a_contact_that_ends_before_it_begins_is_named(run: bpy.types.Object) ->
     assert problem_of(settings, read_recorded(run, None, None)).contacts
 
 
-@pytest.mark.parametrize("change", ["no keys", "uneven scale"])
+@pytest.mark.parametrize("change", ["no keys", "uneven scale", "frame rate"])
 def test_a_change_meanwhile_is_said_to_have_cost_the_result(
     run: bpy.types.Object, change: str
 ) -> None:
@@ -88,15 +88,18 @@ def test_a_change_meanwhile_is_said_to_have_cost_the_result(
     asked = Asked(run.name, digest(recording), recording, MotionProblem())
     if change == "no keys":
         run.animation_data.action = bpy.data.actions.new("Other")
-    else:
+    elif change == "uneven scale":
         run.scale = (1.0, 1.0, 2.0)
+    else:
+        bpy.context.scene.render.fps = 24
     session().solving = replace(Solving(), state=SolveState.SOLVING)
     try:
-        with pytest.raises(ChangedMeanwhile) as fault:
+        with pytest.raises((ChangedMeanwhile, RateChanged)) as fault:
             complete(write_answer(asked, None))
     finally:
         session().solving = None
     assert "thrown away" in said(fault.value)
+    assert ("frame rate" in said(fault.value)) == (change == "frame rate")
 
 
 @pytest.mark.parametrize("name", ["analyze", "fit"])

@@ -296,6 +296,22 @@ def test_a_file_that_another_processor_analysed_needs_no_analysis(
         assert analysis_is_of(settings, read)
 
 
+def test_a_frame_rate_that_changed_is_named(analysed: bpy.types.Object) -> None:
+    """As importing another clip sets it. At the analysis' own all is as before."""
+    render = bpy.context.scene.render
+    before = render.fps, render.fps_base
+    render.fps, render.fps_base = 24, 1.001
+    told = r"frame rate changed from 120 to 23\.976 frames a second.*set it back to 120"
+    with pytest.raises(RuntimeError, match=told):
+        bpy.ops.hangtime.fit()
+    render.fps, render.fps_base = before
+    assert bpy.ops.hangtime.fit() == {"FINISHED"}
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    curves_of(analysed)[0].keyframe_points[150].co[1] += 0.1
+    with pytest.raises(RuntimeError, match="its keys or its repairs changed"):
+        bpy.ops.hangtime.fit()
+
+
 def test_an_action_may_be_renamed_after_the_analysis(analysed: bpy.types.Object) -> None:
     analysed.animation_data.action.name = "Take 7"
     assert bpy.ops.hangtime.fit() == {"FINISHED"}
