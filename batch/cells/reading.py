@@ -115,11 +115,11 @@ def _by_depth(recording: Recording) -> Recording:
 def _about(recording: Recording, problem: MotionProblem, rate: float) -> Recording:
     """The problem's frames and BEYOND seconds on both sides, as far as the clip goes. rate: Hz.
 
-    Raises OutsideKeys.
+    Raises OutsideKeys, ClipTooShort.
     """
     if problem.frames is None:
         return recording
-    start, end = float(recording.frames[0]), float(recording.frames[-1])
+    start, end = recording.ends
     require_inside(problem.frames, recording.name, (start, end))
     first = ceil(max(problem.frames[0], start) - _EPSILON)
     last = max(first, floor(min(problem.frames[1], end) + _EPSILON))

@@ -60,7 +60,7 @@ def span_of(settings: HangtimeSettings, recording: Recording) -> tuple[float, fl
     """First and last scene frame that are adapted; a recording may have frames beyond."""
     first, last = wanted_range(settings)
     if first is None or last is None:
-        return float(recording.frames[0]), float(recording.frames[-1])
+        return recording.ends
     within = recording.window(first, max(first, last)).frames
     return float(within[0]), float(within[-1])
 

@@ -39,7 +39,7 @@ def main(argv: list[str]) -> int:
 
 def survey(name: str, recording: Recording, edits: Sequence[str]) -> Iterator[EditResult]:
     """Of each jump the fit, and where there is one its edits."""
-    whole = float(recording.frames[0]), float(recording.frames[-1])
+    whole = recording.ends
     try:
         found = jumps(recording)
     except Fault as fault:

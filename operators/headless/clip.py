@@ -189,7 +189,7 @@ def _recorded_frames(
 ) -> tuple[float | None, float | None]:
     """The problem's frames as far as the recording goes: beyond, Blender holds the last pose.
 
-    Raises OutsideKeys.
+    Raises OutsideKeys, ClipTooShort.
     """
     from ...bridge.accessors import current_action, shown_range
 

@@ -57,7 +57,7 @@ class ExamineOperator(TaskOperator, bpy.types.Operator):
             self.report({"WARNING"}, FORGOTTEN)
         repairs = applied(settings)
         problem = MotionProblem(
-            frames=(float(recording.frames[0]), float(recording.frames[-1])),
+            frames=recording.ends,
             mass=settings.mass,
             bones=chosen_parts(settings),
             mend=repairs.mend,

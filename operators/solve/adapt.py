@@ -37,7 +37,13 @@ from ...bridge.takes.write_result import (
 )
 from ...bridge.worker_client import shared
 from ...solver.body.anatomy import map_anatomy
-from ...solver.data.faults import ChangedMeanwhile, DrivenBones, HeldBones, RateChanged
+from ...solver.data.faults import (
+    ChangedMeanwhile,
+    DrivenBones,
+    FramesReversed,
+    HeldBones,
+    RateChanged,
+)
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.solver_options import SolverOptions
 from ...solver.data.status import Status
@@ -250,9 +256,14 @@ def _require_loopable(armature: bpy.types.Object) -> None:
 
 
 def read_wanted(armature: bpy.types.Object) -> Incremental[Recording]:
-    """The recording in the artist's range, and beyond where there are keys that belong to it."""
+    """The recording in the artist's range, and beyond where there are keys that belong to it.
+
+    Raises FramesReversed, and as `read_recording`.
+    """
     settings = settings_of(armature)
     first, last = wanted_range(settings)
+    if first is not None and last is not None and last < first:
+        raise FramesReversed(first, last)
     recording = yield from read_recorded_incrementally(armature, first, last, BEYOND)
     if first is None or last is None:
         return recording

@@ -2,8 +2,8 @@
 
 from ...bridge.recipe.recording import RECORDING
 from ...bridge.recipe_syntax.toml_text import entries
-from ...solver.analysis.analyse import MIN_CLIP_DURATION
 from ...solver.data.faults import Damage
+from ...solver.data.recording import MIN_CLIP_DURATION
 from ...solver.doctor.examination.diagnose import Diagnosis
 from ...solver.doctor.finding import Finding, FindingKind
 from ...solver.doctor.repairs import Repairs

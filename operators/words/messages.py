@@ -69,6 +69,8 @@ def _variant(fault: Fault) -> int:
             return 2 if fault.bone and fault.bone == fault.partner else bool(fault.bone)
         case faults.MissingPart():
             return min(len(fault.tried), 2)
+        case faults.ClipTooShort():
+            return 0 if fault.chosen else 2 if fault.frames[0] == fault.frames[1] else 1
         case faults.UnreadableClip() | faults.BadRecipe():
             return fault.line is not None
         case faults.UnreadableText():

@@ -38,8 +38,14 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "({strips:names}), and what they make together has no keys of its own; in the Nonlinear "
     "Animation editor give the action Blending Replace and Influence 1, or mute these strips.",
     faults.NoBones: "The armature “{armature}” has no bones; choose the recorded figure's.",
-    faults.ClipTooShort: "Only {seconds:.2f} s of the recording lie in the chosen frames, and a "
-    "jump needs {minimum_s:g} s at least; choose more frames.",
+    faults.ClipTooShort: (
+        "The chosen frames, {frames[0]:g} to {frames[1]:g}, are only {seconds:.2f} s of the "
+        "recording, and a motion needs {minimum_s:g} s at least; choose more frames.",
+        "The recording lasts only {seconds:.2f} s (frames {frames[0]:g} to {frames[1]:g}), and a "
+        "motion needs {minimum_s:g} s at least; take a longer one, or mend its frame rate.",
+        "The recording has only one frame ({frames[0]:g}), which is a pose and no motion; take a "
+        "recording of {minimum_s:g} s at least.",
+    ),
     faults.FramesFarApart: "The recording's frames lie {seconds:.3g} s apart, and a motion needs "
     "one every {maximum_s:g} s at least; set the frame rate at which it was recorded.",
     faults.FramesReversed: "The chosen frames end at {last:g}, before they begin at {first:g}; "

@@ -26,7 +26,7 @@ from ..data.faults import (
     UnseenSupport,
 )
 from ..data.problem import MotionProblem, Unseen
-from ..data.recording import Recording, Skin
+from ..data.recording import MIN_CLIP_DURATION, Recording, Skin
 from ..scene.belt import belt_speed
 from ..scene.fall_rate import fitting_rate
 from ..scene.support import boxes_beneath
@@ -35,7 +35,6 @@ from .grounding import disjoint, foot_sized, grounded, parted
 from .performance import Performance, contact_points, find_contacts, perform, snap_tolerance
 from .take import take_of
 
-MIN_CLIP_DURATION = 0.3  # s
 ROUNDING = 1e-6  # of a frame's time
 MOST = 2.0 / 3.0  # of the time in the air, in which the body falls at another rate than the scene's
 MAX_FRAME_TIME = 0.125  # s: the flight of a small hop, a quarter second, has two frames then
@@ -143,14 +142,15 @@ def build_figure(recording: Recording, problem: MotionProblem) -> tuple[Recordin
 
     Raises FramesReversed, ClipTooShort, FramesFarApart, MissingPart, ZeroLengthBone.
     """
-    if problem.frames is not None:
-        first, last = problem.frames
-        if last < first:
-            raise FramesReversed(first, last)
-        recording = recording.window(first, last)
+    whole, ends = recording, problem.frames
+    if ends is not None:
+        if ends[1] < ends[0]:
+            raise FramesReversed(*ends)
+        recording = recording.window(*ends)
     seconds = float(recording.times[-1]) if len(recording.times) else 0.0
     if seconds < MIN_CLIP_DURATION:
-        raise ClipTooShort(seconds, MIN_CLIP_DURATION)
+        chosen = len(recording.frames) < len(whole.frames)
+        raise ClipTooShort(seconds, MIN_CLIP_DURATION, ends or whole.ends, chosen)
     require_dense(recording, MAX_FRAME_TIME)
     character = build_character(
         recording, mass=problem.mass, table=problem.mass_table, chosen=problem.bones

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..data.faults import OutsideKeys
-from ..data.recording import BEYOND, Recording
+from ..data.faults import ClipTooShort, OutsideKeys
+from ..data.recording import BEYOND, MIN_CLIP_DURATION, Recording
 
 HELD = 1e-6  # m; a pose that moves by less from frame to frame is held, not recorded
 JUMP_SPEED = 15.0  # m/s; joints that are this fast at once have jumped, from a T-pose mostly
@@ -15,8 +15,10 @@ JUMP_RATIO = 2.0  # unless they are half as fast within the range: throws, sprin
 def require_inside(frames: tuple[float, float], name: str, recorded: tuple[float, float]) -> None:
     """Whether frames reach into those that a recording has. name: what is recorded, to the artist.
 
-    Raises OutsideKeys.
+    Raises OutsideKeys, and ClipTooShort of a single pose.
     """
+    if recorded[0] == recorded[1]:
+        raise ClipTooShort(0.0, MIN_CLIP_DURATION, recorded, chosen=False)
     if frames[0] >= recorded[1] or frames[1] <= recorded[0]:
         raise OutsideKeys(name, *recorded)
 

@@ -8,6 +8,7 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 
 POSE_TOLERANCE = 1e-5  # m and rad; going into edit mode and back moves bones by less
+MIN_CLIP_DURATION = 0.3  # s
 BEYOND = 0.5  # s, on both sides of the range that is adapted, which a recording may have and tell
 
 
@@ -82,6 +83,11 @@ class Recording:
     def rate(self) -> float:
         """Frames per second."""
         return (len(self.times) - 1) / float(self.times[-1] - self.times[0])
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """First and last frame."""
+        return float(self.frames[0]), float(self.frames[-1])
 
     def index(self, bone: str) -> int:
         """Index of the bone called `bone`. Raises KeyError where there is none."""

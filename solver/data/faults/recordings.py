@@ -48,10 +48,15 @@ class NoBones(Fault):
 
 @dataclass
 class ClipTooShort(Fault):
-    """The clip is shorter than the shortest that can hold a jump."""
+    """The clip is shorter than the shortest that can hold a motion.
+
+    frames: its first and last. chosen: whether the recording has more than these.
+    """
 
     seconds: float
     minimum_s: float
+    frames: tuple[float, float]
+    chosen: bool
 
 
 @dataclass

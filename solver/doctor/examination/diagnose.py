@@ -8,13 +8,13 @@ from functools import cache, reduce
 
 import numpy as np
 
-from ...analysis.analyse import MIN_CLIP_DURATION, require_dense
+from ...analysis.analyse import require_dense
 from ...analysis.performance import Performance, find_contacts, perform
 from ...arrays import FloatArray
 from ...body.character import build_character, stature
 from ...data.contacts import ContactSchedule
 from ...data.faults import ClipTooShort, computable
-from ...data.recording import Recording, Skin
+from ...data.recording import MIN_CLIP_DURATION, Recording, Skin
 from ...data.scaling import scaled_recording
 from ...data.scene import SceneObject
 from ...skeleton.bind_pose import bind_frames
@@ -196,7 +196,8 @@ def _are_at(finding: Finding, places: Spans, near: float = 0.0) -> bool:
 def _require_length(recording: Recording) -> None:
     """What is shorter tells nothing. Raises ClipTooShort, FramesFarApart."""
     if len(recording.frames) < FEWEST_FRAMES:
-        raise ClipTooShort(float(recording.times[-1]), MIN_CLIP_DURATION)
+        seconds, ends = float(recording.times[-1]), recording.ends
+        raise ClipTooShort(seconds, MIN_CLIP_DURATION, ends, chosen=False)
     require_dense(recording, SLOWEST)
 
 

@@ -119,7 +119,7 @@ def filled(recording: Recording, missing: tuple[MissingFrames, ...]) -> Recordin
     """
     if not missing:
         return recording
-    first, last = float(recording.frames[0]), float(recording.frames[-1])
+    first, last = recording.ends
     for gap in missing:
         if not first <= gap.after < last:
             raise NotBetweenFrames(gap.after, first, last)

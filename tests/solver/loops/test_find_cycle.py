@@ -65,7 +65,7 @@ def turning() -> Recording:
 @pytest.mark.parametrize(
     ("recording", "frames", "fault", "says"),
     [
-        (load_recording, (24, 25), ClipTooShort, "0.01 s of the recording"),
+        (load_recording, (24, 25), ClipTooShort, "24 to 25, are only 0.01 s"),
         (load_recording, (24, 67), NothingRecurs, "one landing of a foot to its next"),
         (standing, (1, 90), NothingRecurs, "Nothing repeats from frame 1 to 90"),
         (turning, (100, 172), CycleTurns, "only a straight cycle"),

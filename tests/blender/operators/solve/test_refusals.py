@@ -61,6 +61,17 @@ def too_short(armature: bpy.types.Object) -> None:
     armature.hangtime.last_frame = FIRST + 10
 
 
+def backwards(armature: bpy.types.Object) -> None:
+    armature.hangtime.last_frame = FIRST - 11
+
+
+def single_pose(armature: bpy.types.Object) -> None:
+    armature.hangtime.use_range = False
+    for curve in curves_of(armature):
+        while len(curve.keyframe_points) > 1:
+            curve.keyframe_points.remove(curve.keyframe_points[-1], fast=True)
+
+
 def bad_scale(armature: bpy.types.Object) -> None:
     armature.scale = (1.0, 1.0, -1.0)
 
@@ -128,7 +139,9 @@ def assert_refused(operator: Callable[[], set[str]], armature: bpy.types.Object,
         (muted_strip, "cannot be read: Take is muted. Leave one strip unmuted"),
         (unused_strip, "cannot be read: Take would play if the nonlinear animation were not"),
         (edit_mode, "Leave edit mode first"),
-        (too_short, "Only 0.08 s of the recording"),
+        (too_short, "The chosen frames, 110 to 120, are only 0.08 s of the recording"),
+        (backwards, "end at 99, before they begin at 110; swap them"),
+        (single_pose, "The recording has only one frame (1), which is a pose and no motion"),
         (bad_scale, "must be the same, and above zero"),
         (infinite_key, "LeftUpLeg” has a value at frame"),
         (driven_shin, "Drivers pose the bones LeftLeg whatever keys they have"),
