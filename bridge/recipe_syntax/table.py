@@ -2,12 +2,12 @@
 
 import difflib
 import math
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any, NoReturn, TypeVar
 
+from ...solver.data.contacts import COUNTED
 from ...solver.data.faults import BadRecipe
 from .source_lines import KeyPath
 
@@ -22,7 +22,6 @@ class NumberRange:
     holds: Callable[[float], bool]
 
 
-COUNTED = re.compile(r"(ground|flight) \d+")  # a phase's name, as the analysis gives it
 ANY_NUMBER = NumberRange("a number", lambda _: True)
 ABOVE_ZERO = NumberRange("above zero", lambda value: value > 0.0)
 NOT_NEGATIVE = NumberRange("zero or more", lambda value: value >= 0.0)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Protocol
 
+from ...solver.data.contacts import phase_title
 from ..recipe_syntax.items import Kind as RecipeKind
 from .row_parts import RowContext
 from .stored import Fields
@@ -133,5 +134,5 @@ class ConstraintKind:
         if len(bones) == 1 or (bones and self.bones is BoneUse.ONE):
             return f"{titles(bones[0])} {self.short or self.label}"
         if self.bones is BoneUse.NONE and self.range is NewRange.PHASE_ALWAYS and row.phase:
-            return f"{row.phase.title()} {self.label}"
+            return f"{phase_title(row.phase)} {self.label}"
         return self.label

@@ -69,7 +69,7 @@ def heading(adaptation: Adaptation) -> tuple[float, float] | None:
 
 def goes_sideways(adaptation: Adaptation, axes: FloatArray) -> bool:
     """Whether contacts went to the side of the picture's axes (3, 3)."""
-    moved = adaptation.motion.places - adaptation.fit.places
+    moved = adaptation.motion.places - adaptation.setup.fitted.places
     return bool((np.abs(moved @ axes[1]) > SIDEWAYS).any())
 
 

@@ -5,7 +5,7 @@ from math import hypot
 
 from ...bridge.rows.choices import KeyChoice
 from ...solver.data.constants import STANDARD_GRAVITY
-from ...solver.data.contacts import PhaseKind
+from ...solver.data.contacts import PhaseKind, phase_title
 from ...solver.data.reports.constraints import ConstraintReport
 from ...solver.data.reports.jumps import PhaseReport
 from ...solver.data.reports.keys import KeysReport
@@ -149,7 +149,7 @@ def _changes(report: Report) -> Iterator[str]:
     for jump in report.jumps:
         was, now = jump.fit, jump.adapted
         yield (
-            f"{jump.flight.capitalize():<11} frames {jump.take_off_frame:.1f} to "
+            f"{phase_title(jump.flight):<11} frames {jump.take_off_frame:.1f} to "
             f"{jump.landing_frame:.1f}; the body flies {now.flight_length_m:.2f} m "
             f"instead of {was.flight_length_m:.2f} m"
         )
@@ -163,14 +163,14 @@ def _changes(report: Report) -> Iterator[str]:
         yield f"{'Joints':<11} {line.removeprefix('Joints ')}"
     for phase in retimed(report):
         yield (
-            f"{phase.phase.capitalize():<11} takes {phase.adapted_s:.3f} s instead of "
+            f"{phase_title(phase.phase):<11} takes {phase.adapted_s:.3f} s instead of "
             f"{phase.recorded_s:.3f} s"
         )
     yield from moving_ground_lines(report)
     yield from (f"{'Durations':<12}{line}" for line in durations_lines(report))
     for peak in report.forces.peaks:
         yield (
-            f"{peak.phase.capitalize():<11} what carries the body pushes with at most "
+            f"{phase_title(peak.phase):<11} what carries the body pushes with at most "
             f"{peak.peak_bw:.1f} body weights (frame {peak.frame:.0f})"
         )
 
@@ -178,7 +178,7 @@ def _changes(report: Report) -> Iterator[str]:
 def moving_ground_lines(report: Report) -> Iterator[str]:
     """Stances on ground that moves, and those that a take-off from it carries on."""
     for each in report.moving_ground:
-        phase, moved = each.phase.capitalize(), hypot(*each.moved_m)
+        phase, moved = phase_title(each.phase), hypot(*each.moved_m)
         if each.object is None:
             yield f"{phase:<11} is carried on by {moved:.2f} m, with the speed of the ground left"
             continue

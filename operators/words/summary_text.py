@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from ...solver.data.contacts import phase_title
 from ...solver.data.reports.constraints import ConstraintReport, ContactReport
 from ...solver.data.reports.dynamics import ForcePeak
 from ...solver.worker.protocol import Adapted
@@ -36,7 +37,7 @@ def summary(answer: Adapted, roles: Mapping[str, str]) -> str:
             *([] if worst is None else [_slides(worst)]),
             *(f"{c.name}: {_held(c)}" for c in report.conditions if not c.kind.guards),
             *(
-                f"{roles.get(p.phase, p.phase.capitalize())}: {p.adapted_s:.2f} s, "
+                f"{roles.get(p.phase, phase_title(p.phase))}: {p.adapted_s:.2f} s, "
                 f"was {p.recorded_s:.2f} s"
                 for p in retimed(report)
             ),

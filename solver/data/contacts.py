@@ -1,11 +1,14 @@
 """Contact schedule: contacts of body points with the ground, and the ground and flight phases."""
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from itertools import groupby, pairwise
 
 from ..arrays import FloatArray
+
+COUNTED = re.compile(r"(ground|flight) \d+")  # a phase's name, as the analysis gives it
 
 
 class PhaseKind(Enum):
@@ -136,6 +139,11 @@ class Phase:
     def name(self) -> str:
         """Such as "flight 1"."""
         return f"{self.kind.value} {self.number}"
+
+
+def phase_title(name: str) -> str:
+    """A phase's name as a line begins with it; a held frame's is the artist's, and stays."""
+    return name.capitalize() if COUNTED.fullmatch(name) else name
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from ...bridge.properties.surface import HangtimeSurface
 from ...bridge.rows.choices import BodyKind, Met, SurfaceRole
 from ...bridge.rows.kind import Icon, Row
 from ...bridge.rows.phases import TAKE_OFF, roles
+from ...solver.data.contacts import phase_title
 from ..drawing.editor import ui_scale
 
 WIDE = 340  # px; a sidebar in which the range finds room beside the name
@@ -194,7 +195,7 @@ class StanceList(bpy.types.UIList):
 
 def called(settings: HangtimeSettings, phase: str) -> str:
     """What a stance is called to the artist: by its role, where phases still have it."""
-    return roles(settings).get(phase, phase.capitalize())
+    return roles(settings).get(phase, phase_title(phase))
 
 
 def _draw_frames(line: bpy.types.UILayout, frames: tuple[float, float]) -> None:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
-from hangtime.operators.words.report_text import gravity_lines, higher
+from hangtime.operators.words.report_text import gravity_lines, higher, moving_ground_lines
+from hangtime.solver.data.contacts import phase_title
 
 
 @pytest.mark.parametrize(
@@ -22,3 +25,13 @@ def test_a_difference_of_heights_is_said_where_there_is_one(centimetres: float, 
 def test_body_weights_are_told_to_be_the_earths_where_gravity_is_another() -> None:
     assert gravity_lines(9.81) == []
     assert gravity_lines(1.62) == ["1.62 m/s²; body weights (BW) are those on Earth all the same"]
+
+
+@pytest.mark.parametrize(
+    ("phase", "shown"), [("Bar Grab", "Bar Grab"), ("ground 2", "Ground 2"), ("hang on", "hang on")]
+)
+def test_the_artists_name_of_a_held_frame_is_told_as_it_was_given(phase: str, shown: str) -> None:
+    ride = SimpleNamespace(phase=phase, moved_m=(0.5, 0.0), object=None)
+    (line,) = moving_ground_lines(SimpleNamespace(moving_ground=(ride,)))
+    assert line == f"{shown:<11} is carried on by 0.50 m, with the speed of the ground left"
+    assert phase_title(phase) == shown
