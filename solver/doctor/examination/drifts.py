@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ...analysis.performance import Performance
-from ...data.recording import Recording
 from ..figure import Figure
 from ..finding import Finding
 from ..repairs import Repairs
@@ -26,11 +25,11 @@ def find_drifts(
     joined = placed
     for finding in steady:
         joined = joined.joined(finding.remedy or Repairs())
-    floating = find_floating(_of(stood(joined)), figure)
+    floating = find_floating(stood(joined).recording, figure)
     if floating is None:
         return steady
     assert floating.remedy is not None
-    alone = find_floating(_of(stood(placed)), figure)
+    alone = find_floating(stood(placed).recording, figure)
     if alone is not None and not _steady(stood, figure, placed.joined(floating.remedy)):
         return [alone]
     return [*steady, floating]
@@ -39,11 +38,7 @@ def find_drifts(
 def _steady(
     stood: Callable[[Repairs], Performance], figure: Figure, placed: Repairs
 ) -> list[Finding]:
-    rise = find_rise(_of(stood(placed)), figure)
+    rise = find_rise(stood(placed).recording, figure)
     level = placed if rise is None else placed.joined(rise.remedy or Repairs())
     sliding = find_sliding(stood(level), figure)
     return [finding for finding in (rise, sliding) if finding is not None]
-
-
-def _of(performance: Performance) -> Recording:
-    return performance.recording

@@ -10,7 +10,8 @@ from ...data.problem import Mend
 from ...data.recording import Recording
 from ..limbs import Partners
 
-BESIDE, SLOW = 0.1, 0.6  # of a leg: how level both feet stand, and how fast, a second, they go
+LEVEL = 0.1  # of a leg, by which the heights of feet that stand beside each other differ
+STANDING_SPEED = 0.6  # legs a second, of a foot that stands
 FEWEST = 3  # frames
 # Of unit ways along the bones, summed over a leg, or of the upper arm: left minus right, to the
 # left. Honest recordings have 0.1 and more; of runs, whose feet cross and never stand so, nothing
@@ -37,5 +38,5 @@ def _stand_beside(recording: Recording, pair: Partners) -> BoolArray:
     leg = np.median(np.linalg.norm(np.diff(joints, axis=2), axis=3).sum(axis=2))
     ankles = joints[:, :, -1]
     speeds = np.linalg.norm(np.gradient(ankles, recording.times, axis=0), axis=2)
-    level = np.abs(ankles[:, 0, 2] - ankles[:, 1, 2]) < BESIDE * leg
-    return np.asarray(level & (speeds.max(axis=1) < SLOW * leg))
+    level = np.abs(ankles[:, 0, 2] - ankles[:, 1, 2]) < LEVEL * leg
+    return np.asarray(level & (speeds.max(axis=1) < STANDING_SPEED * leg))

@@ -11,7 +11,7 @@ from ...analysis.performance import Performance, contact_points
 from ...arrays import BoolArray, FloatArray
 from ...data.contacts import ContactPoint, PointKind
 from ..local_poses import runs
-from .footing import DRIFT, FLOOR_OFF, LOW, SLOW
+from .footing import DRIFT, FLOOR_OFF, LOW, STANDING_SPEED_UP
 
 SHORTEST = 0.1  # s; what is over sooner is a step's own unrest
 LEAST_SLID = 0.02  # m from its place; soles that roll do less
@@ -54,7 +54,7 @@ def find_feet(performance: Performance) -> tuple[FootFault, ...]:
     for name, point in feet.items():
         velocity = np.gradient(point.track, performance.times, axis=0)
         low = point.track[:, 2] - np.maximum(lowest, floor) < LOW
-        stands = low & (lowest - floor < LOW) & (np.abs(velocity[:, 2]) < SLOW)
+        stands = low & (lowest - floor < LOW) & (np.abs(velocity[:, 2]) < STANDING_SPEED_UP)
         height = point.track[:, 2]
         slides = stands & (np.linalg.norm(velocity[:, :2], axis=1) > DRIFT)
         for kind, wrong in (

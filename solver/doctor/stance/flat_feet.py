@@ -15,8 +15,8 @@ from ..figure import Figure
 from ..local_poses import runs
 
 FLAT = 0.06  # m/s, by which both ends of a foot that stands flat differ
-SLOW = 0.3  # m/s, along the floor; a foot that is lifted or set down goes faster
-SLOW_UP = 0.45  # m/s; who falls is as slow for 0.09 s, which is no stance
+FLAT_SPEED = 0.3  # m/s, along the floor; a foot that is lifted or set down goes faster
+FLAT_SPEED_UP = 0.45  # m/s, up or down; who falls is as slow for 0.09 s, which is no stance
 LEAST_STANCE = 0.1  # s
 
 
@@ -48,8 +48,8 @@ def flat_feet(recording: Recording, figure: Figure) -> Iterator[FlatFoot]:
         ankle, ball = (np.gradient(track, recording.times, axis=0) for track in ends)
         velocity = 0.5 * (ankle + ball)
         flat = np.linalg.norm(ankle - ball, axis=1) < FLAT
-        flat &= np.linalg.norm(velocity[:, :2], axis=1) < SLOW
-        flat &= np.abs(velocity[:, 2]) < SLOW_UP
+        flat &= np.linalg.norm(velocity[:, :2], axis=1) < FLAT_SPEED
+        flat &= np.abs(velocity[:, 2]) < FLAT_SPEED_UP
         yield FlatFoot(0.5 * (ends[0] + ends[1]), velocity, flat)
 
 

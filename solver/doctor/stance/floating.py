@@ -33,8 +33,9 @@ STILL = 0.1  # m/s; of two feet that differ by more one is drawn along the floor
 # none does, what floats is likely within 10 cm and as fast as 15 cm/s.
 KNOT = 0.25  # s; what floats takes a second or more
 STIFF = 0.1**4  # s⁴, of the velocities' second derivative, against what they miss the feet's by
-LEVEL = (0.02 / 0.01) ** 2  # 1/s², of heights, likewise
-NEAR, SLOW = (0.02 / 0.1) ** 2, (0.02 / 0.15) ** 2  # 1/s², of places, and of velocities
+HEIGHT_WEIGHT = (0.02 / 0.01) ** 2  # 1/s², of heights, likewise
+PLACE_WEIGHT = (0.02 / 0.1) ** 2  # 1/s², of places where no foot tells
+VELOCITY_WEIGHT = (0.02 / 0.15) ** 2  # of velocities there
 
 
 def find_floating(recording: Recording, figure: Figure) -> Finding | None:
@@ -120,13 +121,13 @@ class _Ground:
         basis = SplineBasis(breaks, np.zeros(len(breaks), bool))
         one, nothing = np.ones(len(times)), 0.0 * self.velocity
         terms = [
-            SplineTerm(0, NEAR * one, nothing),
-            SplineTerm(1, np.where(self.tells, one, SLOW), self.velocity),
+            SplineTerm(0, PLACE_WEIGHT * one, nothing),
+            SplineTerm(1, np.where(self.tells, one, VELOCITY_WEIGHT), self.velocity),
             SplineTerm(3, STIFF * one, nothing),
         ]
         floor = np.median(self.height[self.tells])
         above = np.repeat((self.height - floor)[:, None], 3, axis=1)
-        level = SplineTerm(0, LEVEL * self.tells, above)
+        level = SplineTerm(0, HEIGHT_WEIGHT * self.tells, above)
         along = basis.least_squares(times, terms)[:, :2]
         upwards = basis.least_squares(times, [*terms, level])[:, 2:]
         return basis.combine(np.hstack([along, upwards]), times)

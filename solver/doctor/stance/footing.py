@@ -16,15 +16,14 @@ from ..falls import Spans
 from ..figure import Figure
 from ..finding import Finding, FindingKind
 from ..repairs import Repairs
-from .flat_feet import SLOW as FLAT_SLOW
-from .flat_feet import FlatSamples
+from .flat_feet import FLAT_SPEED, FlatSamples
 
 FLOOR_OFF = 0.03  # m, from the world's 0
 LOW = 0.03  # m above the floor: a foot that stands
-SLOW = 0.15  # m/s, up or down
+STANDING_SPEED_UP = 0.15  # m/s, up or down, of a foot that stands
 ROUNDS = 8  # of narrowing the speeds to the half that agree best
 DRIFT = 0.12  # m/s; feet that roll over in runs leave 0.1
-FLAT_FAST = 0.8 * FLAT_SLOW  # m/s, of which feet that stand flat no longer tell
+FLAT_FAST = 0.8 * FLAT_SPEED  # m/s, of which feet that stand flat no longer tell
 FLAT_DRIFT = 0.04  # m/s, of feet that stand flat; honest ones leave 0.014
 ALIKE = 0.75  # of the drift, by which half of all speeds differ from it at most; noise leaves more
 LEAST_STANCE, LEAST_STANDING = 0.3, 12  # s, and frames: half of fewer slide alike by chance
@@ -151,7 +150,7 @@ def standing(performance: Performance) -> LowestPoint:
     velocity = np.gradient(tracks, performance.times, axis=0)
     lowest = np.argmin(tracks[:, :, 2], axis=1), np.arange(len(tracks))
     place, speed = tracks[lowest[1], lowest[0]], velocity[lowest[1], lowest[0]]
-    stands = (place[:, 2] - floor < LOW) & (np.abs(speed[:, 2]) < SLOW)
+    stands = (place[:, 2] - floor < LOW) & (np.abs(speed[:, 2]) < STANDING_SPEED_UP)
     return LowestPoint(performance.times[stands], place[stands], speed[stands])
 
 
