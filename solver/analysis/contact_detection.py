@@ -25,6 +25,7 @@ from .point_movement import STEP, PointMovement, even_clock, point_movement
 MIN_SEPARATION = 0.03  # s; between two contacts of one point
 MAX_SLIDE = 0.06  # m; a point that slides further makes a new contact
 CREEP_WINDOW = 0.4  # s; of the running median of a resting point's place
+REACH = 100  # instants on each side of a rest in which a point mostly leaves its place
 SINK_WINDOW = 0.2  # s; of the running low of its height, when it lands
 MAX_FLIGHT = 1.2  # s; a rise of 1.8 m
 MIN_PIECE = 0.03  # s, of a contact that a cut leaves; a foot takes as long to land or leave
@@ -149,22 +150,57 @@ def _candidates_around(
     clock: FloatArray, thresholds: ContactThresholds, movement: PointMovement, first: int, last: int
 ) -> Iterable[_Candidate]:
     """Region growing from a rest to where the point leaves its place; usually one candidate."""
-    level, height = movement.track[:, :2], movement.track[:, 2:]
-    away = level - _at_rest(np.nanmedian, level, CREEP_WINDOW, (first, last))
-    above = height - _at_rest(np.nanmin, height, SINK_WINDOW, (first, last))
-    leaving = movement.point[:, 2:]
-    up = leaving - _at_rest(np.nanmedian, leaving, CREEP_WINDOW, (first, last))
+    begin, landing, lifting = _shares_around(thresholds, movement, first, last)
+    times = clock[begin : begin + len(landing)]
+    for a, b in _runs(np.minimum(landing, lifting) <= 1.0):
+        inside = slice(a, b + 1)
+        stands = (landing[inside] <= 1.0).any() and (lifting[inside] <= 1.0).any()
+        if stands and begin + a <= last and begin + b >= first:
+            start, end = _first_below(times, landing, a), _last_below(times, lifting, b)
+            if end > start:
+                yield _Candidate(start, end, max(begin + a, first), min(begin + b, last))
+
+
+def _shares_around(
+    thresholds: ContactThresholds, movement: PointMovement, first: int, last: int
+) -> tuple[int, FloatArray, FloatArray]:
+    """What `_leaving` tells around a rest, as far as to where the point has left its place, and
+    the first instant of that. Looking at all of a take for each rest would cost its square."""
+    reach, count = REACH, len(movement.track)
+    while True:
+        begin, end = max(first - reach, 0), min(last + 1 + reach, count)
+        rest = first - begin, last - begin
+        landing, lifting = _leaving(thresholds, movement.part(begin, end), rest)
+        stays = np.minimum(landing, lifting) <= 1.0
+        if (begin == 0 or not stays[0]) and (end == count or not stays[-1]):
+            return begin, landing, lifting
+        reach *= 2
+
+
+def _leaving(
+    thresholds: ContactThresholds, movement: PointMovement, rest: tuple[int, int]
+) -> tuple[FloatArray, FloatArray]:
+    """(N,) each: how far a point is from where it rests, of what it may be as it lands, and as it
+    lifts. rest: first and last instant."""
+    pressing = movement.track[:, 2:]
+    above = (pressing - _at_rest(np.fmin.reduce, pressing, SINK_WINDOW, rest))[:, 0]
+    place = np.hstack([movement.track[:, :2], movement.point[:, 2:]])
+    away = place - _at_rest(_median, place, CREEP_WINDOW, rest)
     along = np.maximum(
         np.linalg.norm(movement.velocity[:, :2], axis=1) / thresholds.max_slip_speed,
-        np.linalg.norm(away, axis=1) / MAX_SLIDE,
+        np.linalg.norm(away[:, :2], axis=1) / MAX_SLIDE,
     )
-    landing = np.maximum(above[:, 0] / thresholds.landing_height, along)
-    lifting = np.maximum(up[:, 0] / thresholds.lift_off_height, along)
-    for a, b in _runs(np.minimum(landing, lifting) <= 1.0):
-        if a <= last and b >= first:
-            start, end = _first_below(clock, landing, a), _last_below(clock, lifting, b)
-            if end > start:
-                yield _Candidate(start, end, max(a, first), min(b, last))
+    landing = np.maximum(above / thresholds.landing_height, along)
+    return landing, np.maximum(away[:, 2] / thresholds.lift_off_height, along)
+
+
+def _median(samples: FloatArray, axis: int) -> FloatArray:
+    """As `np.nanmedian`, whose masked arrays take ten times as long for windows of a rest."""
+    ordered = np.sort(samples, axis=axis)  # NaN comes last
+    count = np.sum(~np.isnan(ordered), axis=axis, keepdims=True)
+    middle = ((count - 1) // 2, count // 2)
+    low, high = (np.take_along_axis(ordered, at, axis).squeeze(axis) for at in middle)
+    return np.asarray(0.5 * (low + high))
 
 
 def _at_rest(
@@ -177,7 +213,8 @@ def _at_rest(
     """
     first, last = rest
     half = round(window / (2.0 * STEP))
-    padded = np.pad(samples[first : last + 1], ((half, half), (0, 0)), constant_values=np.nan)
+    padded = np.full((last - first + 1 + 2 * half, samples.shape[1]), np.nan)
+    padded[half : len(padded) - half] = samples[first : last + 1]
     windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1, axis=0)
     during = np.clip(np.arange(len(samples)), first, last) - first
     return np.asarray(statistic(windows, axis=-1)[during])

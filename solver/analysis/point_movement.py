@@ -24,6 +24,11 @@ class PointMovement:
     velocity: FloatArray
     point: FloatArray
 
+    def part(self, start: int, stop: int) -> "PointMovement":
+        """Of the instants from `start` to `stop`, without that."""
+        inside = slice(start, stop)
+        return PointMovement(self.track[inside], self.velocity[inside], self.point[inside])
+
 
 def even_clock(start: float, end: float) -> FloatArray:
     """(N,) instants from `start` to `end`, s, STEP apart or very nearly so."""

@@ -104,6 +104,8 @@ def turned(recording: Recording, repairs: Repairs) -> Recording:
 
 def _rotated(recording: Recording, turn: FloatArray) -> Recording:
     """Turned about the world's origin by a rotation (3, 3)."""
+    if np.array_equal(turn, np.eye(3)):
+        return recording
     bones = tuple(
         replace(b, head=turn @ b.head, tail=turn @ b.tail, rotation=turn @ b.rotation)
         for b in recording.bones
@@ -185,15 +187,18 @@ def _with(mend: Mend, recording: Recording, figure: Figure) -> Recording:
         case Mend.FLIPS:
             return unflipped(recording, figure)
         case Mend.SPIKES:
-            unsound = unsound_spikes(recording, figure)
+            local = LocalPoses.of(recording)
+            unsound = unsound_spikes(recording, local, figure)
+            return local.filled(unsound).posed(recording)
         case Mend.HELD_FRAMES:
             held = held_frames(recording)
             unsound = np.broadcast_to(held[:, None], recording.heads.shape[:2])
+            return LocalPoses.of(recording).filled(unsound).posed(recording)
         case Mend.BONE_LENGTHS:
             return kept_lengths(recording, figure)
         case Mend.NOISE:
             return smoothed(recording, figure)
-    return LocalPoses.of(recording).filled(unsound).posed(recording)
+    raise ValueError(f"how is {mend.value} mended?")
 
 
 def placed_skin(skin: Skin | None, repairs: Repairs) -> Skin | None:

@@ -23,9 +23,10 @@ RETURNED = 0.5  # of either step: the frames before and after are nearer to each
 STANDS_OUT = 4.0  # times what the steps around are off
 
 
-def bursts(recording: Recording, figure: Figure) -> BoolArray:
-    """(T, B) which bones' poses in their parents are of two to six frames that do not belong."""
-    local, unsound = LocalPoses.of(recording), np.zeros(recording.heads.shape[:2], bool)
+def bursts(recording: Recording, local: LocalPoses, figure: Figure) -> BoolArray:
+    """(T, B) which bones' poses in their parents are of two to six frames that do not belong.
+    local: the recording's."""
+    unsound = np.zeros(recording.heads.shape[:2], bool)
     if len(recording.frames) <= 4:
         return unsound
     for bone, part in figure.parts:

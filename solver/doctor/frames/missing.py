@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -27,6 +28,7 @@ COUNTS = (
 BESIDE = 2  # steps on each side of these
 NEARER = 2.2  # times, to a cubic, if the frames are missing; where two are, two apart, 2.7 and more
 STANDS_OUT = 2.5  # times the median of how far those around are from one
+ROUNDING = 1e-7  # m, of places in single precision; what is nearer to a cubic is on it
 ALIKE = 0.4  # of a step, by which it may differ from its neighbours' way
 
 
@@ -59,8 +61,15 @@ def find_dropped(recording: Recording) -> Finding | None:
     of sparse frames."""
     if recording.rate < SPARSE:
         return None
-    places = recording.heads.reshape(len(recording.frames), -1)
-    found = [each for lacking in COUNTS for each in _lacking(places, lacking)]
+    moves = np.diff(recording.heads.reshape(len(recording.frames), -1), axis=0)
+    sizes = {len(lacking) for lacking in COUNTS}
+    looked = {size: _Windows.of(moves, size) for size in sizes if len(moves) >= _steps_of(size)}
+    found = [
+        each
+        for lacking in COUNTS
+        if len(lacking) in looked
+        for each in looked[len(lacking)].lacking(lacking)
+    ]
     counts = np.zeros(len(recording.frames), int)  # before each frame
     for _, at, lacking in sorted(found, reverse=True):  # the clearest first
         if not counts[at - 1 : at + len(lacking) + 1].any():  # nor are the steps beside too long
@@ -78,38 +87,62 @@ def find_dropped(recording: Recording) -> Finding | None:
     )
 
 
-def _lacking(
-    places: FloatArray, counts: tuple[int, ...]
-) -> Iterator[tuple[float, int, tuple[int, ...]]]:
-    """Where joints at places (T, D) are nearer to a cubic if steps side by side lack so many
-    frames: how many times nearer, the first frame after one, and the counts."""
-    size = len(counts) + 1 + 2 * BESIDE
-    if len(places) < size:
-        return
-    beside = np.ones(BESIDE)
-    true = np.concatenate([[0.0], beside, np.array(counts) + 1.0, beside]).cumsum()
-    off, left = (_from_cubic(places, instants) for instants in (np.arange(float(size)), true))
-    ratio = off / np.maximum(left, 1e-9)
-    for at in np.flatnonzero((ratio > NEARER) & _is_alike(places, len(counts), len(off))).tolist():
-        around = off[max(at - 2 * size, 0) : at + 2 * size + 1]  # most have none of these steps
-        if off[at] > STANDS_OUT * np.median(around):
-            yield float(ratio[at]), at + BESIDE + 1, counts
+def _steps_of(several: int) -> int:
+    """Steps of a window: several side by side, and those beside them."""
+    return several + 2 * BESIDE
 
 
-def _from_cubic(places: FloatArray, instants: FloatArray) -> FloatArray:
-    """(N,) m, how far each run of places (T, D), at instants (S,), is from the nearest cubic."""
+@dataclass(frozen=True)
+class _Windows:
+    """All windows, N, of joints' moves in which several steps side by side may lack frames.
+
+    products: (S, S, N) m², of the moves of each window's steps with each other, over all joints.
+    off: (N,) m, how far each is from a cubic as it is. alike: (N,) whether all of these steps go
+    the way of those before and after them.
+    """
+
+    products: FloatArray
+    off: FloatArray
+    alike: BoolArray
+
+    @staticmethod
+    def of(moves: FloatArray, several: int) -> _Windows:
+        """moves: (T - 1, D) m, from a frame to the next."""
+        steps = _steps_of(several)
+        count = len(moves) - steps + 1
+        products = np.empty((steps, steps, count))
+        for apart in range(steps):  # the same two moves are in several windows
+            own = np.einsum("td,td->t", moves[: len(moves) - apart], moves[apart:])
+            for k in range(steps - apart):
+                products[k, k + apart] = products[k + apart, k] = own[k : k + count]
+        off = off_cubic(products, np.arange(steps + 1.0))
+        return _Windows(products, off, _is_alike(moves, several, count))
+
+    def lacking(self, counts: tuple[int, ...]) -> Iterator[tuple[float, int, tuple[int, ...]]]:
+        """Where joints are nearer to a cubic if the steps lack so many frames: how many times
+        nearer, the first frame after one, and the counts."""
+        beside, size = np.ones(BESIDE), len(self.products) + 1
+        true = np.concatenate([[0.0], beside, np.array(counts) + 1.0, beside]).cumsum()
+        ratio = self.off / np.maximum(off_cubic(self.products, true), ROUNDING)
+        for at in np.flatnonzero((ratio > NEARER) & self.alike).tolist():
+            around = self.off[max(at - 2 * size, 0) : at + 2 * size + 1]  # most have none of these
+            if self.off[at] > STANDS_OUT * np.median(around):
+                yield float(ratio[at]), at + BESIDE + 1, counts
+
+
+def off_cubic(products: FloatArray, instants: FloatArray) -> FloatArray:
+    """(N,) m, how far the places at instants (S + 1,) are from the nearest cubic, whose moves have
+    these products (S, S, N): what is left is linear in the places, and no constant changes it."""
     basis, _ = np.linalg.qr(np.vander(instants - instants.mean(), 4), mode="complete")
-    square = np.zeros(len(places) - len(instants) + 1)
-    for weights in basis[:, 4:].T:  # one after the other: all windows at once fill the memory
-        beyond = sum(w * places[k : k + len(square)] for k, w in enumerate(weights))
-        square += np.einsum("td,td->t", beyond, beyond)
-    return np.sqrt(square)
+    # Of a place all moves before it are a part: weights of moves are sums of those of places.
+    weights = np.cumsum(basis[::-1, 4:], axis=0)[-2::-1]
+    square = np.einsum("ij,ijn->n", weights @ weights.T, products)
+    return np.asarray(np.sqrt(np.maximum(square, 0.0)))
 
 
-def _is_alike(places: FloatArray, several: int, count: int) -> BoolArray:
+def _is_alike(moves: FloatArray, several: int, count: int) -> BoolArray:
     """(count,) whether all of several steps, side by side after BESIDE others, go the way of those
-    before and after them, as no jump does, and these move."""
-    moves = np.diff(places, axis=0)
+    before and after them, as no jump does, and these move. moves: (T - 1, D) m."""
     before, after = (moves[k : k + count] for k in (BESIDE - 1, BESIDE + several))
     alike = np.ones(count, bool)
     for k in range(several):

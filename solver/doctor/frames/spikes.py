@@ -24,9 +24,10 @@ RETURNED = 0.5  # of what it leaves by; a frame that is off alone is back in the
 STANDS_OUT = 5.0  # times what the frames around are off
 
 
-def unsound_spikes(recording: Recording, figure: Figure) -> BoolArray:
-    """(T, B) which bones' poses in their parents belong to a frame, or a few, that are off."""
-    local, unsound = LocalPoses.of(recording), np.zeros(recording.heads.shape[:2], bool)
+def unsound_spikes(recording: Recording, local: LocalPoses, figure: Figure) -> BoolArray:
+    """(T, B) which bones' poses in their parents belong to a frame, or a few, that are off.
+    local: the recording's."""
+    unsound = np.zeros(recording.heads.shape[:2], bool)
     if len(recording.frames) <= 4:
         return unsound
     bones, rate = figure.bones, recording.rate
@@ -44,15 +45,15 @@ def unsound_spikes(recording: Recording, figure: Figure) -> BoolArray:
         step, over = (np.linalg.norm(heads[n:] - heads[:-n], axis=1)[:, None] for n in (1, 2))
         single = _single(away, np.array(SPIKE_PLACE * slack(rate))) & _returned(step, over)
         unsound[:, root] |= single[:, 0]
-    return unsound | bursts(recording, figure)
+    return unsound | bursts(recording, local, figure)
 
 
 def find_spikes(recording: Recording, figure: Figure) -> Finding | None:
     """Frames far from those around them."""
-    unsound = unsound_spikes(recording, figure)
+    local = LocalPoses.of(recording)
+    unsound = unsound_spikes(recording, local, figure)
     if not unsound.any():
         return None
-    local = LocalPoses.of(recording)
     filled = local.filled(unsound)
     turned = (angles_between(filled.rotations, local.rotations) * unsound).max(axis=0)
     moved = (np.linalg.norm(filled.heads - local.heads, axis=2) * unsound).max(axis=0)

@@ -34,8 +34,8 @@ STILL = 0.1  # m/s; of two feet that differ by more one is drawn along the floor
 KNOT = 0.25  # s; what floats takes a second or more
 STIFF = 0.1**4  # s⁴, of the velocities' second derivative, against what they miss the feet's by
 HEIGHT_WEIGHT = (0.02 / 0.01) ** 2  # 1/s², of heights, likewise
-PLACE_WEIGHT = (0.02 / 0.1) ** 2  # 1/s², of places where no foot tells
-VELOCITY_WEIGHT = (0.02 / 0.15) ** 2  # of velocities there
+PLACE_WEIGHT = (0.02 / 0.1) ** 2  # 1/s², of places
+VELOCITY_WEIGHT = (0.02 / 0.15) ** 2  # of velocities where no foot tells any, likewise
 
 
 def find_floating(recording: Recording, figure: Figure) -> Finding | None:

@@ -14,7 +14,7 @@ from hangtime.solver.data.faults import (
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.examination.repair import filled, repaired
 from hangtime.solver.doctor.finding import FindingKind
-from hangtime.solver.doctor.frames.missing import find_dropped
+from hangtime.solver.doctor.frames.missing import find_dropped, off_cubic
 from hangtime.solver.doctor.repairs import MissingFrames, Repairs
 from hangtime.tests.helpers.doctored import jump, moved_from
 
@@ -85,3 +85,17 @@ def test_frames_are_not_put_in_where_they_are_left_out() -> None:
     kinds = [finding.kind for finding in diagnosis.findings if not finding.kind.note]
     assert kinds == [FindingKind.DROPPED_FRAMES, FindingKind.JUMP]
     np.testing.assert_array_equal(repaired(less, diagnosis.repairs).frames, jump().frames[:180])
+
+
+def test_products_of_moves_tell_how_far_places_are_from_a_cubic() -> None:
+    """As a fit of the cubics themselves does, wherever the places are."""
+    rng = np.random.default_rng(4)
+    places, instants = (
+        5.0 + rng.normal(size=(7, 6)).cumsum(axis=0),
+        np.array([0, 1, 2, 5, 6, 7, 8.0]),
+    )
+    moves = np.diff(places, axis=0)
+    (off,) = off_cubic((moves @ moves.T)[:, :, None], instants)
+    powers = np.vander(instants, 4)
+    left = places - powers @ np.linalg.lstsq(powers, places, rcond=None)[0]
+    assert off == pytest.approx(np.linalg.norm(left), rel=1e-9)
