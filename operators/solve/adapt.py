@@ -20,6 +20,7 @@ from ...bridge.constraints.motion_problem import (
     span_of,
     wanted_range,
 )
+from ...bridge.controls.aimed import aimed_bones
 from ...bridge.controls.driven import beside_keys, turned_by_drivers
 from ...bridge.controls.held import held_bones
 from ...bridge.controls.refusals import require_posable
@@ -217,15 +218,19 @@ def require_writable(
 ) -> Incremental[None]:
     """Before a solve takes its seconds. span: first and last frame that are adapted.
 
+    Neck and head may be aimed by constraints, and stay so (`aimed.py`).
     Controls are tried once for a recording, as that takes long and a drag's ghost waits for it.
     Raises PulledFromOutside, NoControls, DrivenBones, HeldBones, and as `map_anatomy`.
     """
     if not beside_keys(armature):
         return
     settings = settings_of(armature)
-    segments = map_anatomy(recording.bones, chosen_parts(settings))
-    bodies = tuple(recording.bones[segment.bone].name for segment in segments)
     frames = recording.window(*span).frames
+    segments = map_anatomy(recording.bones, chosen_parts(settings))
+    with showing_recorded(armature)():
+        aimed = aimed_bones(armature, recording.bones, segments, frames)
+    named = (recording.bones[segment.bone].name for segment in segments)
+    bodies = tuple(name for name in named if name not in aimed)
     trying = armature.session_uid, analysis_key(settings, recording), bodies
     driven = session().tried == trying
     if not driven:

@@ -1,6 +1,7 @@
 """Writes an answer of the solver as a result: an action, its strip or slot, marks and report."""
 
 from collections.abc import Generator, Sequence
+from dataclasses import replace
 from math import isclose
 
 import bpy
@@ -9,6 +10,7 @@ from ...bridge.accessors import current_scene, play_to_end, present, shown_range
 from ...bridge.armature.actions import (
     read_recorded_incrementally,
     recorded_action,
+    showing_recorded,
 )
 from ...bridge.armature.incremental import Incremental, complete
 from ...bridge.armature.poses import frames_per_second
@@ -17,6 +19,7 @@ from ...bridge.armature.write import write_action
 from ...bridge.constraints.motion_problem import SAME_RATE
 from ...bridge.constraints.standing import missed_contacts
 from ...bridge.constraints.status import write_status
+from ...bridge.controls.aimed import aimed_bones, aimed_in, without
 from ...bridge.controls.driven import is_driven
 from ...bridge.controls.held import held_bones
 from ...bridge.files.reproportioned import build_reproportioned
@@ -46,6 +49,8 @@ from ...bridge.takes.write_result import (
     lay_in_slot,
     write_adapted_incrementally,
 )
+from ...solver.body.anatomy import map_anatomy
+from ...solver.body.character import build_character
 from ...solver.body.proportions import changed_recording
 from ...solver.data.faults import ChangedMeanwhile, Fault, RateChanged
 from ...solver.data.recording import PoseTrack, Recording, same_motion
@@ -54,7 +59,7 @@ from ...solver.worker.protocol import Adapted
 from ..words.headline import missed_line
 from ..words.report_text import as_text
 from ..words.summary_text import summary
-from ..words.take_text import pin_lines, polish_lines, take_lines
+from ..words.take_text import LEAST_SHIFT_MM, aimed_line, pin_lines, polish_lines, take_lines
 from ..words.warning_text import warnings_of
 from .keys import mark_contacts, write_keys
 from .scene import note_surfaces, stale_surfaces
@@ -96,7 +101,11 @@ def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
         within = asked.recording.window(*present(asked.problem.frames))
         done = yield from _write_other(changed_recording(within, limbs), answer, armature)
     else:
-        done = yield from _write_own(asked, answer, armature)
+        aimed = _aimed(asked, armature)
+        written = replace(answer, track=without(answer.track, aimed))
+        done = yield from _write_own(asked, written, armature)
+        if aimed:
+            _tell_aimed(asked, armature, aimed, answer.track)
     remarks = note_surfaces(armature, asked, answer.report, stale)
     settings = settings_of(armature)
     ends = (present(each) for each in (recorded_action(armature), settings.adapted))
@@ -158,6 +167,30 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         note_made(armature, action, span, time.later)
         renewal.note(action, time, (times.recorded_frame[0], times.recorded_frame[-1]))
     return f"Wrote the {FORMS[options.written_as]} {action.name}"
+
+
+def _aimed(asked: Asked, armature: bpy.types.Object) -> tuple[str, ...]:
+    """Neck and head, where constraints aim them and go on so."""
+    segments = map_anatomy(asked.recording.bones, asked.problem.bones)
+    frames = asked.recording.window(*present(asked.problem.frames)).frames
+    with showing_recorded(armature)():
+        return aimed_bones(armature, asked.recording.bones, segments, frames)
+
+
+def _tell_aimed(
+    asked: Asked, armature: bpy.types.Object, bones: tuple[str, ...], track: PoseTrack
+) -> None:
+    """How far these bones are from the solution's track; where that counts, as a warning."""
+    problem, action = asked.problem, present(settings_of(armature).adapted)
+    window = asked.recording.window(*present(problem.frames))
+    figure = build_character(
+        window, mass=problem.mass, table=problem.mass_table, chosen=problem.bones
+    )
+    aimed = aimed_in(armature, bones, track, figure.bodies)
+    if aimed.mm > LEAST_SHIFT_MM:
+        _warn(armature, action, [aimed_line(aimed)])
+    else:
+        _warn(armature, action, [], [aimed_line(aimed)])
 
 
 def _tell_unmet(armature: bpy.types.Object, action: bpy.types.Action, track: PoseTrack) -> None:

@@ -4,11 +4,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from math import degrees, hypot
 
+from ...bridge.controls.aimed import Aimed
 from ...bridge.controls.kept import KeptByControls
 from ...bridge.polish.pins import MovedPin
 from ...bridge.polish.put_on import PlacedPolish
 from ...bridge.takes.span import WrittenTake
 
+LEAST_SHIFT_MM = 5.0  # of the centre of mass, by which a flight is hardly told from a parabola
 _LEVEL = 0.0005  # m
 _STRAIGHT = 0.05  # degrees
 
@@ -91,6 +93,17 @@ def polish_lines(polish: PlacedPolish | None) -> list[str]:
             "no such frames"
         )
     return told
+
+
+def aimed_line(aimed: Aimed) -> str:
+    """A line about neck and head that go on being aimed."""
+    by = f"constraints ({', '.join(aimed.constraints)})" if aimed.constraints else "drivers"
+    far = "; for less, mute them, or bake the action" if aimed.mm > LEAST_SHIFT_MM else ""
+    return (
+        f"Left to {by}, as in the recording: {', '.join(aimed.bones)}, up to {aimed.degrees:.0f}° "
+        f"from the solution (frame {aimed.frame:g}); the centre of mass is off by "
+        f"{aimed.mm:.1f} mm at most{far}"
+    )
 
 
 def pin_lines(pins: Sequence[MovedPin]) -> list[str]:
