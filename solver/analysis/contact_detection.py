@@ -77,7 +77,8 @@ def detect_contacts(
         for name, p in points.items()
         if p.hip is not None
     }
-    touches = timed_by_forces(clock, touches, heights, legs)
+    frame_time = float(np.median(np.diff(times)))
+    touches = timed_by_forces(clock, touches, heights, legs, frame_time)
     contacts = _within(touches, duration)
     contacts = _kept_off_ends(contacts, duration, shortest_flight_s, times, com)
     contacts = _closed(contacts, duration, shortest_flight_s, times, com)

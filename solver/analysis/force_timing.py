@@ -28,11 +28,13 @@ def timed_by_forces(
     touches: Sequence[Contact],
     heights: Mapping[str, FloatArray],
     legs: Mapping[str, FloatArray],
+    frame_time: float,
 ) -> list[Contact]:
     """The touches; where one lands or lifts a whole foot, its force says when.
 
-    clock: (N,) s. heights: (N,) m, and legs: (N,) m from the hip, of points by name. Where the body
-    leaves with a foot, its force ends with the leg's push, or when it is up, whichever comes first.
+    clock: (N,) s. heights: (N,) m, and legs: (N,) m from the hip, of points by name. frame_time: s,
+    of the recording. Where the body leaves with a foot, its force ends with the leg's push, or when
+    it is up, whichever comes first.
     """
     timed = []
     for touch in touches:
@@ -43,7 +45,8 @@ def timed_by_forces(
         stood = max((t.end for t in foot if t.start < start), default=float(clock[0]))
         stands = min((t.start for t in foot if t.end > end), default=float(clock[-1]))
         if ends[1] in heights and stood < start:
-            start = max(_impact(clock, heights[ends[0]] - heights[ends[1]], start), stood)
+            turning = acceleration(heights[ends[0]] - heights[ends[1]], frame_time)
+            start = max(_impact(clock, turning, start), stood)
         if touch.point in legs and end < stands:
             pushed = _end_of_push(clock, legs[touch.point], end)
             stays = any(t.start < pushed and t.end > pushed + PUSH_REACH for t in others)
@@ -58,13 +61,12 @@ def _other_end(point: str) -> str:
     return f"{side} {OTHER_END.get(end)}"
 
 
-def _impact(clock: FloatArray, ahead: FloatArray, landing: float) -> float:
+def _impact(clock: FloatArray, turning: FloatArray, landing: float) -> float:
     """When the force on the end of a foot that lands first begins, s.
 
-    It turns the foot, so that this end accelerates upwards from the other one: `ahead` (N,) m, its
-    height above that. landing: the same instant by its height, s; kept where nothing stands out.
+    It turns the foot, so that this end accelerates upwards from the other one, by `turning` (N,)
+    m/s². landing: the same instant by its height, s; kept where nothing stands out.
     """
-    turning = acceleration(ahead)
     sought = np.flatnonzero(np.abs(clock - landing - IMPACT_MIDDLE) <= IMPACT_REACH)
     peak = int(sought[np.argmax(turning[sought])])
     if turning[peak] < MIN_IMPACT or peak in (sought[0], sought[-1]):

@@ -56,7 +56,14 @@ def rate(samples: FloatArray) -> FloatArray:
     return np.pad((samples[2 * HALF :] - samples[: -2 * HALF]) / (2.0 * SMOOTHING), HALF)
 
 
-def acceleration(samples: FloatArray) -> FloatArray:
-    """(N,) second derivative, 1/s², of samples (N,) STEP apart: central; 0 at the clip's ends."""
-    bend = samples[2 * HALF :] - 2.0 * samples[HALF:-HALF] + samples[: -2 * HALF]
-    return np.pad(bend / SMOOTHING**2, HALF)
+def acceleration(samples: FloatArray, frame_time: float) -> FloatArray:
+    """(N,) second derivative, 1/s², of samples (N,) STEP apart: central; 0 at the clip's ends.
+
+    frame_time: s, of the recording. Less apart than its frames are, samples tell how they were
+    interpolated: they bend at frames.
+    """
+    half = max(HALF, round(frame_time / STEP))
+    if len(samples) <= 2 * half:
+        return np.zeros_like(samples)
+    bend = samples[2 * half :] - 2.0 * samples[half:-half] + samples[: -2 * half]
+    return np.pad(bend / (half * STEP) ** 2, half)

@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 from hangtime.bridge.formats.bvh import read_bvh
 from hangtime.bridge.formats.motion_clip import to_recording
+from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.performance import find_contacts, perform
 from hangtime.solver.body.character import build_character
 from hangtime.solver.data.contacts import ContactSchedule
+from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.numerics.interpolation import interpolate
 from hangtime.tests.helpers.clips import load_recording, mocap_path
@@ -65,6 +67,19 @@ def test_times_do_not_depend_on_the_frame_rate(rate: int) -> None:
     )
     assert flight.start == pytest.approx(usual.start, abs=0.5 / rate)
     assert flight.end == pytest.approx(usual.end, abs=0.5 / rate)
+
+
+def test_a_landing_between_coarse_frames_is_the_same_wherever_the_range_begins() -> None:
+    """Between frames of 24/1.001 a second the feet are interpolated, and bend at the frames."""
+    recording, rate = load_recording(JUMP), 24.0 / 1.001
+    coarse, (usual,) = at_rate(recording, rate), schedule_of(recording).flights
+    landings = []
+    for first in (19, 22, 23, 27):
+        schedule = analyse(coarse, MotionProblem(frames=(float(first), 55.0))).schedule
+        landings += [flight.end + first / rate for flight in schedule.flights]
+    assert len(landings) == 4
+    assert max(landings) - min(landings) < 0.005
+    assert np.abs(np.array(landings) - usual.end).max() < 1.0 / rate
 
 
 @pytest.mark.parametrize("clip", ["run_1.bvh", "run_2.bvh", "fair1_jumping.bvh", JUMP])
