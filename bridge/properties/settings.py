@@ -361,6 +361,7 @@ class HangtimeAction(bpy.types.PropertyGroup):
     refined: declared(boolean(), options=HIDDEN)  # by Refine, whose weights are of its edit
     performer: declared(target(), options=HIDDEN)  # of other limbs; none: who has the recording
     accepted: declared(boolean(), options=HIDDEN)
+    scene_end: declared(whole(), options=HIDDEN)  # the scene's last frame before it was made longer
     report: declared(text(), options=HIDDEN)  # the report's text
     times: declared(text(), options=HIDDEN)  # its time map: recorded frames, adapted frames
     overlaps: declared(text(), options=HIDDEN)  # what is in what: of the recording, of itself

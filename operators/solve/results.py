@@ -1,8 +1,10 @@
 """Operators on the result: show it or the recording, Accept, Discard, Show Report, Cancel."""
 
+from math import ceil
+
 import bpy
 
-from ...bridge.accessors import current_action, present, source_of
+from ...bridge.accessors import current_action, current_scene, present, shown_range, source_of
 from ...bridge.action_slots import lost_slot
 from ...bridge.armature.actions import recorded_action, show
 from ...bridge.armature.strips import remove_strips
@@ -205,7 +207,8 @@ class DiscardOperator(_OfSettledResult, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature, result = required_armature(context), required_result(context)
         settings, recorded, name = settings_of(armature), source_of(result), result.name
-        performer = performer_of(armature)
+        performer, last = performer_of(armature), ceil(shown_range(armature, result)[1])
+        scene_end: int = action_settings(result).scene_end
         if settings.source == result:
             settings.source = None
         if performer != armature:
@@ -216,12 +219,27 @@ class DiscardOperator(_OfSettledResult, bpy.types.Operator):
             remove_strips(each, result)
         remove_slot(result)
         bpy.data.actions.remove(result)
-        if recorded is not None and not results_from(recorded):
-            unguard(recorded)
+        if recorded is not None:
+            _leave_as_before(recorded, last, scene_end)
         settings.adapted = None  # the edit at work is no other result's
         settings.status = ""
         self.report({"INFO"}, f"Discarded {name}")
         return {"FINISHED"}
+
+
+def _leave_as_before(recorded: bpy.types.Action, last: int, scene_end: int) -> None:
+    """Once no result of a recording is left, its fake user and the scene's end are what they were.
+
+    last: the last frame of the one that went. scene_end: the scene's before that was made longer
+    for it, 0 where it was not.
+    """
+    left, scene = results_from(recorded), current_scene()
+    if left and scene_end:
+        action_settings(left[-1]).scene_end = scene_end
+    elif scene_end and scene.frame_end == last:  # nor has the artist changed it
+        scene.frame_end = scene_end
+    if not left:
+        unguard(recorded)
 
 
 class ShowReportOperator(_OfResult, bpy.types.Operator):

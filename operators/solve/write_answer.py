@@ -109,7 +109,11 @@ def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
     remarks = note_surfaces(armature, asked, answer.report, stale)
     settings = settings_of(armature)
     ends = (present(each) for each in (recorded_action(armature), settings.adapted))
-    play_to_end(current_scene(), *(shown_range(armature, each)[1] for each in ends))
+    scene = current_scene()
+    scene_end = scene.frame_end
+    play_to_end(scene, *(shown_range(armature, each)[1] for each in ends))
+    if scene.frame_end != scene_end:
+        action_settings(present(settings.adapted)).scene_end = scene_end
     refined = asked.problem.requests.solution.method is Method.EXPLICIT
     action_settings(present(settings.adapted)).refined = refined
     settings.status = "\n".join([settings.status, *remarks])

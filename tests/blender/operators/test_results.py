@@ -126,19 +126,23 @@ def test_a_result_is_discarded_and_the_edit_stays(adapted: bpy.types.Object) -> 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kept", [False, True])
-def test_the_last_discard_leaves_the_recording_its_own_fake_user(
+def test_the_last_discard_leaves_fake_user_and_end_of_the_scene_as_they_were(
     analysed: bpy.types.Object, kept: bool
 ) -> None:
     recorded = current_action(analysed)
-    recorded.use_fake_user = kept
+    recorded.use_fake_user, scene = kept, bpy.context.scene
+    end = scene.frame_end = round(recorded.frame_range[1])
+    analysed.hangtime.stances["ground 2"].forward = 0.3  # which takes longer
     for _ in range(2):
         assert bpy.ops.hangtime.adapt() == {"FINISHED"}
         assert recorded.use_fake_user
         assert bpy.ops.hangtime.show_recording() == {"FINISHED"}
     for left in (True, kept):
         bpy.ops.hangtime.show_adapted()
+        assert scene.frame_end > end
         assert bpy.ops.hangtime.discard() == {"FINISHED"}
         assert recorded.use_fake_user == left
+    assert scene.frame_end == end
     assert "hangtime_guarded" not in recorded
 
 
