@@ -12,6 +12,7 @@ class EditEnding(Enum):
     SOLVED = "solved"
     IMPOSSIBLE = "told impossible"  # by name: before the solve, or as what no body can do
     MISSED = "missed"  # the steps ended short of it, and what conflicts is named
+    SKIPPED = "skipped"  # the figure lacks the part of the body that it is about
     CRASHED = "crashed"  # an exception that is no fault in words, or no answer in its time
 
 
@@ -46,14 +47,20 @@ class KindOfEdit:
         return sum(result.ending is ending for result in self.results)
 
     @property
+    def tried(self) -> Sequence[EditResult]:
+        """Those that were not skipped; all where all were."""
+        kept = [each for each in self.results if each.ending is not EditEnding.SKIPPED]
+        return kept or self.results
+
+    @property
     def seconds(self) -> float:
         """The median."""
-        return median(result.seconds for result in self.results)
+        return median(result.seconds for result in self.tried)
 
     @property
     def steps(self) -> float:
         """The median."""
-        return median(result.steps for result in self.results)
+        return median(result.steps for result in self.tried)
 
     @property
     def slowest(self) -> EditResult:

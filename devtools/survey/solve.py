@@ -22,7 +22,7 @@ from ...solver.worker.pipeline import (
 from ..processes import dump
 from ..recordings import read
 from .result import EditEnding, EditResult
-from .windows import Window, jumps, window
+from .windows import LacksPart, Window, jumps, window
 
 RESULTS = "results.pickle"
 FIT = "fit"
@@ -78,6 +78,8 @@ def edited(recording: str, window: Window, fitted: Fit, name: str) -> EditResult
         result = adapt_fit(asked, fitted, StageClock())
         steps = sum(len(outcome.steps) for outcome in result.adaptation.outcomes)
         ending, said = judged(result)
+    except LacksPart as lack:
+        ending, said = EditEnding.SKIPPED, str(lack)
     except BadRecipe as fault:  # ours
         ending, said = EditEnding.CRASHED, sentence(fault)
     except Fault as fault:

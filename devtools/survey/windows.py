@@ -14,6 +14,7 @@ from ...solver.body.anatomy import Part, Side
 from ...solver.data.contacts import ContactSchedule, Phase, PhaseKind
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
+from ...solver.skeleton.parts import label_of
 from ...solver.worker.pipeline import Subject, measure
 from ..recordings import HELD, HOPS
 
@@ -36,6 +37,11 @@ BONES = {
     "other_knee": (Part.SHANK, Side.LEFT),
     "other_ankle": (Part.FOOT, Side.LEFT),
 }
+ABOVE = {Part.TOE: (Part.FOOT,), Part.HAND: (Part.FOREARM,), Part.HEAD: (Part.NECK,)}
+
+
+class LacksPart(Exception):
+    """A figure lacks the part of the body that an edit is about; the message says which."""
 
 
 def held() -> dict[str, str]:
@@ -73,34 +79,43 @@ class Window:
         return float(first), float(last)
 
     def problem(self, edit: str) -> MotionProblem:
-        """Of an edit's recipe. Raises BadRecipe."""
-        text = Template(edits()[edit]).substitute(self._words())
+        """Of an edit's recipe. Raises BadRecipe, LacksPart."""
+        recipe = Template(edits()[edit])
+        text = recipe.substitute({word: self._word(word) for word in recipe.get_identifiers()})
         first, last = self.frames
         return parse_recipe(f"frames = [{first:g}, {last:g}]\n{text}").problem
 
-    def _words(self) -> dict[str, str]:
+    def _word(self, word: str) -> str:
+        """What a word of the recipes stands for. Raises LacksPart."""
+        if word in BONES:
+            return self._bone(*BONES[word])
         recording, flight = self.subject.recording, self.flight
         middle = int(np.argmin(np.abs(recording.times - 0.5 * (flight.start + flight.end))))
-        bones = {word: self._bone(*of) for word, of in BONES.items()}
-        sole = [self._bone(part, Side.LEFT) for part in (Part.FOOT, Part.TOE)]
-        hand = recording.heads[middle, recording.index(bones["hand"]), 2]
-        height = float(hand) - self.subject.schedule.floor_m + RAISED
-        return bones | {
-            "before": self.before.name,
-            "flight": flight.name,
-            "after": self.after.name,
-            "middle": f"{recording.frames[middle]:g}",
-            "longer": f"{LONGER * (flight.end - flight.start):.3f}",
-            "raised": f"{height:.3f}",
-            "left_sole": str([*dict.fromkeys(sole)]),
-        }
+        match word:
+            case "before" | "flight" | "after":
+                phase: Phase = getattr(self, word)
+                return phase.name
+            case "middle":
+                return f"{recording.frames[middle]:g}"
+            case "longer":
+                return f"{LONGER * (flight.end - flight.start):.3f}"
+            case "raised":
+                hand = recording.heads[middle, recording.index(self._bone(*BONES["hand"])), 2]
+                return f"{float(hand) - self.subject.schedule.floor_m + RAISED:.3f}"
+            case "left_sole":
+                sole = [self._bone(part, Side.LEFT) for part in (Part.FOOT, Part.TOE)]
+                return str([*dict.fromkeys(sole)])
+        raise KeyError(word)
 
     def _bone(self, part: Part, side: Side) -> str:
-        """Of a part of the body; of the one above it where there is none, as toes and hands."""
+        """Of a part of the body; of the one above it where there is none, as toes and hands.
+        Raises LacksPart."""
         character = self.subject.analysis.performance.character
-        above = {Part.TOE: Part.FOOT, Part.HAND: Part.FOREARM, Part.HEAD: Part.NECK}
-        body = character.body(part, side)
-        return self._bone(above[part], side) if body is None else character.bodies[body].bone
+        for each in (part, *ABOVE.get(part, ())):
+            body = character.body(each, side)
+            if body is not None:
+                return character.bodies[body].bone
+        raise LacksPart(f"The figure has no {label_of((part, side))} that moves by itself.")
 
 
 def jumps(recording: Recording) -> list[tuple[float, float]]:

@@ -13,6 +13,8 @@ from hangtime.devtools.survey.result import EditEnding, EditResult, kinds
 from hangtime.devtools.survey.solve import edited
 from hangtime.devtools.survey.table import table
 from hangtime.devtools.survey.windows import AROUND, QUICK, Window, edits, held, spread, window
+from hangtime.solver.body.anatomy import Part, Side
+from hangtime.solver.body.character import Character
 from hangtime.solver.data.contacts import Contact, ContactSchedule
 from hangtime.solver.data.faults import OutOfReach
 from hangtime.tests.helpers.clips import load_recording
@@ -78,6 +80,24 @@ def test_an_exception_that_is_no_fault_is_a_crash_and_fails_the_survey(
     assert tell([found], [], 1.0, tmp_path) == 1
     assert tell([result("a", EditEnding.MISSED, 1.0, 1)], [], 1.0, tmp_path) == 0
     assert tell([], [], 1.0, tmp_path) == 1
+
+
+def test_an_edit_of_a_part_that_the_figure_lacks_is_skipped_by_name(
+    hop: Window, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = Character.body
+
+    def headless(figure: Character, part: Part, side: Side = Side.MIDDLE) -> int | None:
+        return None if part in (Part.HEAD, Part.NECK) else whole(figure, part, side)
+
+    monkeypatch.setattr(Character, "body", headless)
+    found = edited("clip", hop, fitted_hop(), "head_in_a_cone")
+    assert found.ending is EditEnding.SKIPPED
+    assert found.said == "The figure has no head that moves by itself."
+    assert hop.problem("landing_further").pins  # is about no head
+    other = result("head_in_a_cone", EditEnding.SOLVED, 3.0, 7)
+    (kind,) = kinds([found, other])
+    assert (kind.count(EditEnding.SKIPPED), kind.seconds, kind.steps) == (1, 3.0, 7)
 
 
 def test_the_table_counts_endings_and_names_the_slowest(tmp_path: Path) -> None:
