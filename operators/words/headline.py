@@ -55,7 +55,8 @@ def headline(report: Report) -> list[str]:
     if report.status is not Status.SOLVED:
         return [outcome(report.status)]
     accepted = accepted_lines(report.needs)
-    told = [nearness(report.fit_to_recording), *accepted, *given_up_lines(report)]
+    told = [nearness(report.fit_to_recording), *accepted, *lifted_lines(report)]
+    told += given_up_lines(report)
     told += [line_told(line) for line in most_telling(report.failed)]
     missed = [missed_line(report.missed_contacts)] if report.missed_contacts else []
     return [*missed, _solved(report, shown=not accepted), *(f"  {line}" for line in told)]
@@ -124,6 +125,17 @@ def accepted_lines(needs: FitNeeds) -> list[str]:
         )
         lines.append(f"Contacts off their places by what counts as good enough: {names}")
     return lines
+
+
+def lifted_lines(report: Report) -> list[str]:
+    """The flights that are longer for what was lifted off the floor: lines."""
+    return [
+        f"Without what {' and '.join(f'“{name}”' for name in each.lifts)} "
+        f"{'lifts' if len(each.lifts) == 1 else 'lift'} nothing touches from frame "
+        f"{each.first_frame:.0f} to {each.last_frame:.0f}: the body flies for "
+        f"{each.adapted_s:.2f} s there, with it for {each.recorded_s:.2f} s"
+        for each in report.lifted_flights
+    ]
 
 
 def given_up_lines(report: Report) -> list[str]:

@@ -6,7 +6,7 @@ from ...solver.data.contacts import phase_title
 from ...solver.data.reports.constraints import ConstraintReport, ContactReport
 from ...solver.data.reports.dynamics import ForcePeak
 from ...solver.worker.protocol import Adapted
-from .headline import accepted_lines, given_up_lines, nearness
+from .headline import accepted_lines, given_up_lines, lifted_lines, nearness
 from .report_text import (
     amount,
     certificate_lines,
@@ -34,6 +34,7 @@ def summary(answer: Adapted, roles: Mapping[str, str]) -> str:
             said,
             nearness(report.fit_to_recording),
             *accepted_lines(report.needs),
+            *lifted_lines(report),
             *([] if worst is None else [_slides(worst)]),
             *(f"{c.name}: {_held(c)}" for c in report.conditions if not c.kind.guards),
             *(

@@ -1,4 +1,5 @@
-"""Flight summaries: the pelvis's crouch and apex heights, and the flight's length."""
+"""Flight summaries: the pelvis's crouch and apex heights, the flight's length, and what lengthened
+it."""
 
 from collections.abc import Callable, Iterator, Sequence
 
@@ -6,11 +7,13 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.contacts import ContactSchedule, Phase, PhaseKind
-from ..data.reports.jumps import FlightSummary, JumpReport, RecordedFlight
+from ..data.reports.jumps import FlightSummary, JumpReport, LiftedFlight, RecordedFlight
 from ..fitting.fit import Fit
 from ..numerics.interpolation import interpolate
+from ..stages.setup import Setup
 from ..transcription.motion import Motion
 
+LONGER = 0.05  # s, by which a flight is seen to be longer
 FrameOf = Callable[[float], float]  # the scene's frame at an instant, s
 
 
@@ -53,6 +56,30 @@ def jumps(fit: Fit, motion: Motion, schedule: ContactSchedule) -> Iterator[JumpR
             crouch_deeper_cm=deeper,
             apex_higher_cm=100.0 * (adapted.apex_pelvis_height_m - before.apex_pelvis_height_m),
         )
+
+
+def lifted_flights(setup: Setup) -> Iterator[LiftedFlight]:
+    """The flights that are longer, and seen to be so, for contacts that a problem lifts."""
+    context, fit = setup.context, setup.fit
+    spans = {phase.name: phase for phase in context.phases}  # with all contacts
+    for now in context.schedule.phases:
+        if now.kind is not PhaseKind.FLIGHT:
+            continue
+        inside = [_shared(now, p) for p in spans.values() if p.kind is PhaseKind.FLIGHT]
+        lifts = [r.name for r in setup.requests.lifts if _shared(now, spans[r.phase]) > 0.0]
+        if lifts and now.end - now.start > sum(inside) + LONGER:
+            yield LiftedFlight(
+                lifts=tuple(lifts),
+                first_frame=scene_frame(fit, now.start),
+                last_frame=scene_frame(fit, now.end),
+                recorded_s=sum(inside),
+                adapted_s=now.end - now.start,
+            )
+
+
+def _shared(a: Phase, b: Phase) -> float:
+    """How long two phases overlap, s."""
+    return max(0.0, min(a.end, b.end) - max(a.start, b.start))
 
 
 def _flight_summary(

@@ -45,7 +45,15 @@ from ..transcription.motion import DynamicsResidual, Motion
 from ..transcription.sampling import Instants, State
 from ..transcription.torque_constraint import TorqueFunction
 from .certificate import LoadedDrift, between_knots, certificate, friction_used, loaded_drifts
-from .flight_summary import apex, flights, frames_per_second, jumps, recorded_apex, scene_frame
+from .flight_summary import (
+    apex,
+    flights,
+    frames_per_second,
+    jumps,
+    lifted_flights,
+    recorded_apex,
+    scene_frame,
+)
 from .joint_report import joint_changes, recorded_ranges
 from .moving_ground import moving_ground
 from .npz_export import instants
@@ -107,6 +115,7 @@ def report(
         unseen_support=tuple(unseen_support(fit, motion)),
         let_go=tuple(let_go(fit)),
         accepted_contacts=tuple(accepted(motion)),
+        lifted_flights=tuple(lifted_flights(adaptation.setup)),
     )
 
 

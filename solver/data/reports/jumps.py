@@ -39,6 +39,17 @@ class JumpReport:
 
 
 @dataclass(frozen=True)
+class LiftedFlight:
+    """A flight that is longer for what was lifted off the floor, by these requests' names."""
+
+    lifts: tuple[str, ...]
+    first_frame: float
+    last_frame: float
+    recorded_s: float
+    adapted_s: float
+
+
+@dataclass(frozen=True)
 class PhaseReport:
     """How long a phase of the recording took, and takes now."""
 

@@ -26,7 +26,7 @@ from .constraints import (
 )
 from .dynamics import DenseResiduals, ForcesReport, TorquesReport, TorqueUse
 from .joints import JointChange, RecordedRange
-from .jumps import JumpReport, PhaseReport, TimeMap
+from .jumps import JumpReport, LiftedFlight, PhaseReport, TimeMap
 from .keys import KeysReport, MissedContact
 from .loop import LoopReport
 from .omission import OMIT_NONE
@@ -126,6 +126,7 @@ class Report:
     unseen_support: where something unseen carries the body. let_go: contacts that the fit found
     no way to hold. accepted_contacts: those that it holds near enough to their places.
     missed_contacts: those that the written keys do not show where they were solved to be.
+    lifted_flights: where nothing touches for longer as contacts were lifted.
     """
 
     status: Status
@@ -162,6 +163,7 @@ class Report:
     let_go: tuple[LetGoReport, ...] = ()
     accepted_contacts: tuple[AcceptedReport, ...] = ()
     missed_contacts: tuple[MissedContact, ...] = ()
+    lifted_flights: tuple[LiftedFlight, ...] = ()
 
     @property
     def needs(self) -> FitNeeds:

@@ -5,6 +5,7 @@ from dataclasses import replace
 from hangtime.operators.words.headline import MOST_GIVEN_UP, headline
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.reports.constraints import ConstraintReport
+from hangtime.solver.data.reports.jumps import LiftedFlight
 from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.results.report import report
@@ -32,6 +33,17 @@ def test_what_gave_way_is_in_the_first_line_and_the_worst_are_named_first() -> N
     assert beside[1].startswith(f"Hand in shape {MOST_GIVEN_UP - 1}")
     assert len(beside) == MOST_GIVEN_UP
     assert any(line.strip().startswith("and 1 more") for line in lines)
+
+
+def test_a_flight_that_lifting_made_longer_is_told_with_its_frames() -> None:
+    problem = MotionProblem()
+    made = report(adapt(fitted_hop(), problem), problem, Origin("hop"))
+    assert not any("nothing touches" in line for line in headline(made))
+    flight = LiftedFlight(("One leg",), 199.0, 292.0, 0.22, 0.77)
+    lines = headline(replace(made, lifted_flights=(flight,)))
+    (line,) = [line for line in lines if "nothing touches from frame 199 to 292" in line]
+    assert "“One leg”" in line
+    assert "0.77 s" in line
 
 
 def test_where_nothing_gave_way_nothing_is_said_of_it() -> None:
