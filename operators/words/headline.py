@@ -79,7 +79,7 @@ def _solved(report: Report, *, shown: bool) -> str:
     """The first line of what is solved. shown: whether the recording shows all that carries."""
     failed, count = report.failed, len(report.certificate)
     do = "does" if len(failed) == 1 else "do"
-    lines = f"{len(failed)} of the certificate's {count} lines {do} not hold"
+    lines = f"{len(failed)} of the certificate's {count} lines {do} not hold{_as_recorded(failed)}"
     if any(line.item in FITS for line in failed):
         return f"Solved, but the fit is far from the recording: {lines}."
     if not shown:
@@ -92,6 +92,14 @@ def _solved(report: Report, *, shown: bool) -> str:
     if not but:
         return outcome(report.status)
     return f"Solved: everything asked for holds, but {', and '.join(but)}."
+
+
+def _as_recorded(failed: Sequence[CertificateLine]) -> str:
+    """How many of the lines are no worse than the recording's."""
+    count = sum(line.as_recorded for line in failed)
+    if not count:
+        return ""
+    return ", as in the recording" if count == len(failed) else f", {count} as in the recording"
 
 
 def nearness(fit: FitQuality) -> str:
@@ -161,17 +169,19 @@ def _given_up(each: ConstraintReport) -> str:
 
 
 def most_telling(failed: tuple[CertificateLine, ...]) -> list[CertificateLine]:
-    """A bad fit, and the few that are furthest beyond their limits."""
+    """A bad fit, and the few that are furthest beyond their limits, what is as recorded last."""
     fit = [line for line in failed if line.item in FITS]
     others = [line for line in failed if line.item not in FITS]
-    others.sort(key=lambda line: line.value / line.limit, reverse=True)
+    others.sort(key=lambda line: (not line.as_recorded, line.value / line.limit), reverse=True)
     return [*fit, *others[:MOST_NAMED]]
 
 
 def line_told(line: CertificateLine) -> str:
-    """Such as "a loaded point slides by 45 mm (Left toe 2, frame 231)"."""
+    """Such as "a loaded point slides by 45 mm (Left toe 2, frame 231): limit 5 mm, recorded 2"."""
     where = f" ({line_place(line)})" if line_place(line) else ""
-    return f"{CERTIFICATE[line.item]} {with_unit(line.value, line.unit)}{where}"
+    recorded = "" if line.recorded is None else f", recorded {plain(line.recorded)}"
+    said = f"{CERTIFICATE[line.item]} {with_unit(line.value, line.unit)}{where}"
+    return f"{said}: limit {with_unit(line.limit, line.unit)}{recorded}"
 
 
 def line_place(line: CertificateLine) -> str:

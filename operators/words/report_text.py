@@ -93,19 +93,18 @@ def certificate_lines(report: Report) -> list[str]:
     failed, count = report.failed, len(report.certificate)
     if not failed:
         return [f"Certificate: all {count} lines hold"]
-    named = [
-        f"Beyond its limit of {with_unit(line.limit, line.unit)}: {line_told(line)}"
-        for line in most_telling(failed)
-    ]
+    named = map(line_told, most_telling(failed))
     return [f"Certificate: {count - len(failed)} of {count} lines hold", *named]
 
 
 def _certificate(report: Report) -> Iterator[str]:
-    yield f"{'Certificate':<42}{'':>16}{'limit':>14}  holds"
+    yield f"{'Certificate':<42}{'':>16}{'recorded':>11}{'limit':>14}  holds"
     for line in report.certificate:
         value, limit = with_unit(line.value, line.unit), with_unit(line.limit, line.unit)
         holds = "yes" if line.holds else "no"
-        said = f"{CERTIFICATE[line.item]:<42}{value:>16}{limit:>14}  {holds:<3}  {line_place(line)}"
+        recorded = "" if line.recorded is None else plain(line.recorded)
+        figures = f"{value:>16}{recorded:>11}{limit:>14}"
+        said = f"{CERTIFICATE[line.item]:<42}{figures}  {holds:<3}  {line_place(line)}"
         yield said.rstrip()
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from ..analysis.performance import Performance
 from ..arrays import FloatArray
 from ..data.contacts import Contact, ContactSchedule
+from ..data.reports.certificate import CertificateItem
 from ..data.requests import BodyChange
 from ..data.status import Status
 from ..human.human_guard import HumanGuard, recorded_ranges
@@ -176,6 +177,11 @@ class Fit(SolvedMotion):
     @cached_property
     def other_bodies(self) -> dict[BodyChange, Motion]:
         """Cache of the fit with other bodies (setup.py): their functions take long to build."""
+        return {}
+
+    @cached_property
+    def certified(self) -> dict[CertificateItem, float]:
+        """Cache of the values of its certificate (results/certificate.py), as edits are beside."""
         return {}
 
     @cached_property

@@ -14,6 +14,7 @@ from ..body.inverse_dynamics import InverseDynamics
 from ..data.constants import STANDARD_GRAVITY
 from ..data.reports.certificate import CertificateItem, CertificateLine
 from ..data.reports.report import FitQuality
+from ..fitting.fit import Fit
 from ..human.strength import ECCENTRIC_FACTOR, LEG_JOINTS, peak_torque
 from ..transcription.compliant_sole import SINKING_TIME
 from ..transcription.contact_pins import PointContact
@@ -84,13 +85,35 @@ def certificate(
     """Every line of a motion with such residuals, torques (see `between_knots`) and drifts of its
     contacts, and of its fit."""
     return (
-        *_residuals(motion, left, frame),
-        *_forces(motion, frame),
-        *_torques(motion, left.times, np.abs(torques), frame),
-        *_contacts(motion, drifts, frame),
+        *_of_motion(motion, left, torques, drifts, frame),
         _line(Item.FIT_RMS, fit.joint_centres_rms_cm),
         _line(Item.FIT_WORST_FRAME, fit.worst_frame_rms_cm, fit.worst_frame),
     )
+
+
+def _of_motion(
+    motion: Motion,
+    left: DynamicsResidual,
+    torques: FloatArray,
+    drifts: Sequence[LoadedDrift],
+    frame: FrameOf,
+) -> Iterator[CertificateLine]:
+    yield from _residuals(motion, left, frame)
+    yield from _forces(motion, frame)
+    yield from _torques(motion, left.times, np.abs(torques), frame)
+    yield from _contacts(motion, drifts, frame)
+
+
+def beside_recording(lines: Sequence[CertificateLine], fit: Fit) -> tuple[CertificateLine, ...]:
+    """The lines of an adaptation of a fit, those of the motion with what the fit's own has."""
+    if not fit.solved:
+        return tuple(lines)
+    if not fit.certified:
+        left, torques = between_knots(fit.motion)
+        drifts = loaded_drifts(fit.motion)
+        found = _of_motion(fit.motion, left, torques, drifts, lambda time: time)
+        fit.certified.update({line.item: line.value for line in found})
+    return tuple(replace(line, recorded=fit.certified.get(line.item)) for line in lines)
 
 
 def _line(

@@ -44,7 +44,14 @@ from ..transcription.contact_pins import PointContact
 from ..transcription.motion import DynamicsResidual, Motion
 from ..transcription.sampling import Instants, State
 from ..transcription.torque_constraint import TorqueFunction
-from .certificate import LoadedDrift, between_knots, certificate, friction_used, loaded_drifts
+from .certificate import (
+    LoadedDrift,
+    beside_recording,
+    between_knots,
+    certificate,
+    friction_used,
+    loaded_drifts,
+)
 from .flight_summary import (
     apex,
     flights,
@@ -80,9 +87,10 @@ def report(
     drifts, quality = loaded_drifts(motion), fit_quality(fit)
     left, torques = between_knots(motion)
     conditions = condition_violations(adaptation)
+    lines = certificate(motion, left, torques, drifts, quality, partial(scene_frame, fit))
     return Report(
         status=adaptation.outcome.status,
-        certificate=certificate(motion, left, torques, drifts, quality, partial(scene_frame, fit)),
+        certificate=beside_recording(lines, fit),
         recording=_recording(fit, origin),
         figure=_figure(fit, motion, problem),
         pins=tuple(_pin(pin) for pin in problem.pins),

@@ -1,7 +1,11 @@
 """Records of the report's certificate: what a laboratory asks of a motion."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
+
+from .omission import OMIT_NONE
+
+AS_RECORDED = 1.05  # times the recording's value: no more is no worse
 
 
 class CertificateItem(Enum):
@@ -32,7 +36,8 @@ class CertificateItem(Enum):
 class CertificateLine:
     """One figure of the certificate. where: a contact or a side. frame: None for a mean.
 
-    holds: whether the value is at most the limit.
+    holds: whether the value is at most the limit. recorded: the value of the recording (its fit),
+    None where that is not told.
     """
 
     item: CertificateItem
@@ -42,3 +47,11 @@ class CertificateLine:
     holds: bool
     frame: float | None
     where: str
+    recorded: float | None = field(default=None, metadata=OMIT_NONE)
+
+    @property
+    def as_recorded(self) -> bool:
+        """Whether it does not hold, but in the recording is no better."""
+        if self.holds or self.recorded is None:
+            return False
+        return self.value <= AS_RECORDED * self.recorded

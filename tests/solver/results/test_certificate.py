@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from hangtime.operators.words.headline import headline
 from hangtime.operators.words.report_text import as_text, certificate_lines
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.problem import MotionProblem
@@ -20,6 +21,7 @@ from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.solver.transcription.motion import Motion
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 
+FIT_WORST = Item.FIT_WORST_FRAME
 PROBLEM, ORIGIN = MotionProblem(), Origin("hop.bvh")
 
 
@@ -139,6 +141,28 @@ def test_headlines_say_no_more_than_is_true() -> None:
     assert "fit off the recording, rms 9.2 cm (frame 12)" in far
     assert "a loaded point slides by 80 mm" in far
     assert "loading rate" not in far  # the least of them
+
+
+def test_what_the_recording_has_alike_is_told_apart_from_what_an_edit_did() -> None:
+    own = [each for each in found().certificate if each.item not in (Item.FIT_RMS, FIT_WORST)]
+    assert [each.recorded for each in own] == pytest.approx([each.value for each in own])
+    assert line(FIT_WORST).recorded is None
+
+    def text(**values: float) -> list[str]:
+        """The headline where these lines have a limit of 1, and 2 in the recording."""
+        made = tuple(
+            replace(each, value=values[each.item.name], limit=1.0, holds=False, recorded=2.0)
+            for each in found().certificate
+            if each.item.name in values
+        )
+        return headline(replace(found(), certificate=made))
+
+    assert text(KNEE_TORQUE=2.0)[0].endswith("lines does not hold, as in the recording.")
+    told = text(KNEE_TORQUE=2.05, HIP_TORQUE=1.5, ANKLE_TORQUE=5.0)
+    assert told[0].endswith("3 of the certificate's 3 lines do not hold, 2 as in the recording.")
+    first = next(each for each in told if "torque" in each)
+    assert "ankle torque 5 N·m/kg" in first
+    assert first.endswith("limit 1 N·m/kg, recorded 2")
 
 
 def test_the_whole_certificate_is_in_the_text() -> None:

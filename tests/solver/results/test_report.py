@@ -76,7 +76,7 @@ def test_what_is_not_finite_becomes_none() -> None:
 
 def test_numbers_carry_units() -> None:
     bare = {"bodies", "degrees_of_freedom", "unknowns", "rows", "iterations", "violation"}
-    bare |= {"value", "limit", "worst_violation"}  # whose unit is beside them
+    bare |= {"value", "limit", "recorded", "worst_violation"}  # whose unit is beside them
     units = ("_m", "_s", "_frame", "_kg", "_hz", "_bw", "_bw_m", "_mm", "_cm", "_deg", "seconds")
     units += ("frame", "_frames", "_per_second", "_over_tolerance", "_coefficient_needed", "_m_s2")
     units += ("_coefficient", "_over_start", "_share", "_rad2")
