@@ -4,7 +4,7 @@
 
 The equalities are settled by an augmented Lagrangian (Nocedal & Wright, 17.3), which also settles
 redundant rows (two feet planted, pins on one rigid foot) without choosing among them; the bounds by
-a small quadratic program (bounded_qp.py).
+a small quadratic program (bounded_qp.py), which limp joints do not crowd (limp_torques.py).
 """
 
 from contextlib import suppress
@@ -15,13 +15,14 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..data.row_kinds import RowKind
-from ..numerics.block_banded import BlockBanded, CholeskyFactor, LocalColumns
-from ..numerics.splines import ORDER
+from ..numerics.block_banded import BlockBanded, CholeskyFactor
 from ..numerics.tied_factor import Factor, TiedFactor
 from ..transcription.rows import Rows, by_kind
 from ..transcription.transcription import Transcription
 from .acceleration import Anderson
 from .bounded_qp import BoundedStep
+from .limp_torques import LimpTorques
+from .span_rows import SpanRows
 
 # Velocities are weighed against positions by the time in which they would move as far.
 ROW_SCALES = {RowKind.PIN_SPEED: 30.0}
@@ -34,73 +35,7 @@ SWEEP_REST = 0.25  # of a tolerance, at which sweeps end too: closer, weak rows 
 # Of the diagonal, from a rounding on as little as will do: what steps cost along weak directions is
 # a rounding of it as well, and a ridge of 1e-8 turned toes by 26 rad.
 RIDGES = tuple(10.0**k for k in range(-14, -7))
-AT_ONCE = 1000  # rows that are sorted; all at once would be a copy of them all
 MERIT_DEAD_BAND = 0.5  # of a bound's tolerance, which the merit function ignores
-
-
-@dataclass(frozen=True)
-class _SpanRows:
-    """Jacobian gathered span by span: J (S, R, 4 n), zero where a span has fewer rows."""
-
-    J: FloatArray
-    counts: IntArray  # (S,) rows of each span
-    first: IntArray  # (S,) first block of each span
-    size: int
-    where: tuple[IntArray, IntArray]  # of each row: its span, its place there
-
-    @staticmethod
-    def of(
-        rows: Rows, chosen: IntArray, scale: FloatArray, first: IntArray, basis: FloatArray | None
-    ) -> "_SpanRows":
-        """Sorts the chosen rows (m,), in units of scale (m,), by span."""
-        span = rows.span[chosen]
-        order = np.argsort(span, kind="stable")
-        counts = np.bincount(span, minlength=len(first))
-        before = np.concatenate([[0], np.cumsum(counts)])
-        place = np.empty(len(order), dtype=int)
-        place[order] = np.arange(len(order)) - before[span[order]]
-        n = rows.jacobian.shape[2] if basis is None else basis.shape[1]
-        J = np.zeros((len(first), counts.max(initial=0), ORDER * n))
-        for start in range(0, len(chosen), AT_ONCE):
-            some = slice(start, start + AT_ONCE)
-            jacobian = rows.jacobian[chosen[some]]
-            jacobian = jacobian if basis is None else jacobian @ basis
-            J[span[some], place[some]] = jacobian.reshape(len(jacobian), ORDER * n)
-        other = scale != 1.0  # few; all rows once more would be a copy of them all
-        J[span[other], place[other]] /= scale[other, None]
-        return _SpanRows(J, counts, first, n, (span, place))
-
-    def times(self, d: FloatArray) -> FloatArray:
-        """(S, R) product J d, of d (K, n)."""
-        local = d[self.first[:, None] + np.arange(ORDER)].reshape(len(self.J), -1, 1)
-        return np.asarray((self.J @ local)[..., 0])
-
-    def transposed(self, y: FloatArray, blocks: int) -> FloatArray:
-        """(K, n) product J' y, of y (S, R)."""
-        local = (y[:, None] @ self.J).reshape(len(self.J), ORDER, self.size)
-        total = np.zeros((blocks, self.size))
-        for k in range(ORDER):
-            total[self.first + k] += local[:, k]
-        return total
-
-    def add_normal(self, system: BlockBanded, weight: float) -> None:
-        """Adds weight * J'J."""
-        system.add_squares(self.first, self.J, self.counts, weight)
-
-    @property
-    def begins(self) -> IntArray:
-        """(R,) first block of each row."""
-        return np.asarray(self.first[self.where[0]])
-
-    def columns(self, rows: IntArray) -> LocalColumns:
-        """Columns of J' of the chosen rows (m,)."""
-        span, place = (index[rows] for index in self.where)
-        local = self.J[span, place].reshape(len(rows), ORDER, self.size)
-        first = self.first[span] - self.first[span].min()
-        columns = np.zeros((first.max() + ORDER, self.size, len(rows)))
-        for k in range(ORDER):
-            columns[first + k, :, np.arange(len(rows))] = local[:, k]
-        return LocalColumns(int(self.first[span].min()), columns)
 
 
 @dataclass(frozen=True)
@@ -147,7 +82,8 @@ class LinearisedProblem:
         self._equal = np.flatnonzero(rows.equal)
         scale = by_kind(rows.kind[self._equal], ROW_SCALES)
         first = transcription.basis.first_coefficient
-        self._equalities = _SpanRows.of(rows, self._equal, scale, first, basis)
+        self._equalities = SpanRows.of(rows, self._equal, scale, first, basis)
+        self._limp = LimpTorques.of(rows, first, basis)
         self._matrix = self._system(None if last is None else last.matrix)
         self._factor: Factor = self._factored()
         if transcription.seam is not None:
@@ -157,9 +93,10 @@ class LinearisedProblem:
         self._bound(transcription, rows, None if last is None else last.sides)
 
     def _system(self, into: BlockBanded | None = None) -> BlockBanded:
-        """W + rho J'J."""
+        """W + rho J'J, and what limp joints add."""
         system = self._metric.copy(into=into)
         self._equalities.add_normal(system, PENALTY)
+        self._limp.add_normal(system)
         return system
 
     def _factored(self) -> CholeskyFactor:
@@ -195,7 +132,7 @@ class LinearisedProblem:
         self._scale, self._tolerance = by_kind(rows.kind, ROW_SCALES), rows.tolerance
         self._free = np.flatnonzero(~rows.equal)
         first = transcription.basis.first_coefficient
-        bounds = _SpanRows.of(rows, self._free, self._scale[self._free], first, self._basis)
+        bounds = SpanRows.of(rows, self._free, self._scale[self._free], first, self._basis)
         self._bounds = bounds
         was = np.zeros(len(self._free)) if sides is None else sides[self._free]
         self._bounded = BoundedStep(
@@ -268,12 +205,16 @@ class LinearisedProblem:
         gradient: FloatArray | None = None,
         multipliers: FloatArray | None = None,
         sweeps: int = MAX_SWEEPS,
+        *,
+        aimed: bool = False,
     ) -> KktStep:
         """Augmented Lagrangian: repeat d = -(W + rho J'J)^-1 (g + J'(y + rho r)) within the bounds,
         y += rho (r + J d), until the linearised equalities hold a thousand times better than
         before, or well within their tolerances. Rows that bounds leave little room settle slowly,
         which Anderson acceleration mends. value: (R,). gradient: g (K, n_block), None for the
         minimum-norm step. multipliers: y to begin with (R,), None zero. sweeps: at most so many.
+        aimed: whether limp joints' torques have a target; else they are only held back, which
+        shifts no minimum.
         """
         windows = self._equalities
         r = np.zeros(windows.J.shape[:2])
@@ -287,12 +228,14 @@ class LinearisedProblem:
         residual = r
         enough = SWEEP_REST * self._scaled(self._tolerance, self._equal)
         enough = np.maximum(enough, SWEEP_REDUCTION * float(np.abs(residual).max()))
+        off = self._limp.off(value) if aimed else self._limp.none
         at, accelerated = self._scaled(value, self._free), Anderson()
         z = at
         for sweep in range(sweeps):
             lagrangian_gradient = windows.transposed(y + PENALTY * residual, self._blocks)
             if sweep:
                 lagrangian_gradient += self._metric.times(d)
+            lagrangian_gradient += self._limp.gradient(off, d)
             if gradient is not None:
                 lagrangian_gradient += gradient
             half = self._factor.forward(-lagrangian_gradient)
