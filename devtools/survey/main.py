@@ -98,4 +98,5 @@ def tell(results: Sequence[EditResult], failed: Sequence[str], seconds: float, o
     for told in (*map(line, crashed), *failed):
         print(f"failed: {told}")
     print(f"{len(results)} edits in {seconds:.0f} s; all in {out / 'survey.json'}")
-    return 1 if crashed or failed or not results else 0
+    nothing = all(result.ending is EditEnding.SKIPPED for result in results)
+    return 1 if crashed or failed or nothing else 0

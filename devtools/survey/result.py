@@ -12,7 +12,7 @@ class EditEnding(Enum):
     SOLVED = "solved"
     IMPOSSIBLE = "told impossible"  # by name: before the solve, or as what no body can do
     MISSED = "missed"  # the steps ended short of it, and what conflicts is named
-    SKIPPED = "skipped"  # the figure lacks the part of the body that it is about
+    SKIPPED = "skipped"  # the figure lacks the part that it is about, or the recording a flight
     CRASHED = "crashed"  # an exception that is no fault in words, or no answer in its time
 
 

@@ -22,7 +22,7 @@ from ...solver.worker.pipeline import (
 from ..processes import dump
 from ..recordings import read
 from .result import EditEnding, EditResult
-from .windows import LacksPart, Window, jumps, window
+from .windows import LEAST_FLIGHT, LacksPart, Window, jumps, window
 
 RESULTS = "results.pickle"
 FIT = "fit"
@@ -45,6 +45,9 @@ def survey(name: str, recording: Recording, edits: Sequence[str]) -> Iterator[Ed
     except Fault as fault:
         yield refused(name, whole, fault)
         return
+    if not found:
+        said = f"Nothing flies in it for {LEAST_FLIGHT:g} s or more."
+        yield EditResult(name, whole, FIT, EditEnding.SKIPPED, 0.0, 0, said)
     for frames in found:
         try:
             if (jump := window(recording, frames)) is None:

@@ -56,6 +56,14 @@ def test_flights_are_spread_and_windows_do_not_overlap() -> None:
     assert all(b[0] - a[1] >= 2.0 * AROUND for a, b in pairwise(found))
 
 
+def test_a_recording_without_a_flight_is_told_and_is_no_success(tmp_path: Path) -> None:
+    crouching = load_recording(HOP_CLIP).window(1.0, 40.0)
+    (found,) = solve.survey("clip", crouching, ["landing_further"])
+    assert found.ending is EditEnding.SKIPPED
+    assert found.said.startswith("Nothing flies in it")
+    assert tell([found], [], 1.0, tmp_path) == 1
+
+
 def test_an_edit_that_is_refused_is_told_impossible(
     hop: Window, monkeypatch: pytest.MonkeyPatch
 ) -> None:
