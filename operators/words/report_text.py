@@ -60,13 +60,17 @@ def as_text(report: Report) -> str:
 
 
 def joint_lines(report: Report) -> list[str]:
-    """The joints that changed most against the recording: a line, none where nothing did."""
+    """The joints that changed most against the recording, and why they do not whirl: lines."""
     told = [
         f"{each.bone} {each.change_deg:.0f}° (frame {each.frame:.0f})"
         for each in report.joint_changes
         if each.change_deg >= LEAST_TURN
     ]
-    return [f"Joints changed most: {', '.join(told)}"] if told else []
+    lines = [f"Joints changed most: {', '.join(told)}"] if told else []
+    if report.whirled_m_s is not None:
+        speed = f"{report.whirled_m_s:.0f} m/s"
+        lines.append(f"Joints would whirl at {speed}, so changes of torques were weighed as well")
+    return lines
 
 
 def loop_lines(report: Report) -> list[str]:

@@ -6,6 +6,7 @@ from enum import Enum
 from .recording import Skin
 from .requests import Requests
 from .scene import SceneObject
+from .solver_options import Method
 
 
 class MassTable(Enum):
@@ -120,6 +121,11 @@ class MotionProblem:
         bones = dict(sorted(self.bones.items()))
         known = replace(self, pins=(), scene=(), skin=None, requests=Requests(), bones=bones)
         return repr((known, self.skin and self.skin.digest()))
+
+    def weighing_torques(self) -> "MotionProblem":
+        """The same with changes of torques weighed beside those of the movement."""
+        solution = replace(self.requests.solution, method=Method.IMPLICIT_TORQUES)
+        return replace(self, requests=replace(self.requests, solution=solution))
 
     def keeping_times(self) -> "MotionProblem":
         """The same, but for durations that are not asked for."""

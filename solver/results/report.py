@@ -119,6 +119,7 @@ def report(
         durations=adaptation.setup.durations,
         phases=_phases(adaptation),
         times=time_map(adaptation),
+        whirled_m_s=adaptation.whirled,
         stages=None if stages is None else tuple(stages),
         unseen_support=tuple(unseen_support(fit, motion)),
         let_go=tuple(let_go(fit)),

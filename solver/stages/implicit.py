@@ -13,10 +13,11 @@ from ..data.faults import NotInLoop, PeakTooLow, SeamStanceMoved
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack
 from ..data.row_kinds import RowKind
-from ..data.solver_options import Method, ObjectiveKind
+from ..data.solver_options import Dynamics, Method, ObjectiveKind
 from ..data.status import Durations, Status
 from ..fitting.fit import ADAPT_TOLERANCE, Fit, SolvedMotion
 from ..fitting.knot_refinement import refine
+from ..human.limb_speed import FASTER, fastest_joint, whirls
 from ..optimisation.guards import Guard, guarded, in_the_way
 from ..optimisation.sqp import MAX_STEPS, Outcome, Progress, Stopped, restore
 from ..transcription.constraint import DenseViolation, dense_violation, exchange
@@ -52,7 +53,8 @@ class Adaptation(SolvedMotion):
     stuck: where the steps failed, None where they did not; the motion is then the last on the way
     that obeys physics, `reached` the share of the way that it went. gain: the explicit solution's
     objective in shares of that at its start; None where there was none. stood: where the contacts
-    stand of a motion short of its target, None where they are at it.
+    stand of a motion short of its target, None where they are at it. whirled: m/s of the fastest
+    joint without torques weighed, where that is why they are; else None.
     """
 
     fit: Fit
@@ -61,6 +63,7 @@ class Adaptation(SolvedMotion):
     reached: float = 1.0
     gain: float | None = None
     stood: Standing | None = None
+    whirled: float | None = None
 
     @property
     def track(self) -> PoseTrack:
@@ -83,21 +86,46 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
     tried with the recorded ones, and the better of both returned; a loop keeps these, for it lasts
     whole frames. Raises SeamStanceMoved, NotInLoop of a loop. A solve that fails is returned with
     the best motion found and a status that says so; one that `progress` ends by raising Stopped,
-    with the motion as it stood.
+    with the motion as it stood. Where limbs whirl as nobody's do it is solved again with torques
+    weighed, and the calmer motion returned.
     """
     setup = _possible(fit, problem)
     _require_closed(setup)
     try:
         found = _solve(fit, problem, setup, progress)
         lacking = _shortcomings(found)
-        if setup.durations is not Durations.FOUND or lacking == NO_SHORTCOMINGS:
-            return found
-        setup = _with_recorded_durations(fit, problem)
-        again = _solve(fit, problem, setup, progress)
-        worse, better = (found, again) if _shortcomings(again) < lacking else (again, found)
-        return replace(better, outcomes=(*worse.outcomes, *better.outcomes))
+        if setup.durations is Durations.FOUND and lacking != NO_SHORTCOMINGS:
+            setup = _with_recorded_durations(fit, problem)
+            again = _solve(fit, problem, setup, progress)
+            better, worse = (again, found) if _shortcomings(again) < lacking else (found, again)
+            found = _after(worse, better)
     except Stopped as stop:
         return _stopped(stop.motion, fit, setup)
+    return _calmed(found, fit, problem, progress)
+
+
+def _after(worse: Adaptation, better: Adaptation) -> Adaptation:
+    """The better of two, with the steps of both."""
+    return replace(better, outcomes=(*worse.outcomes, *better.outcomes))
+
+
+def _calmed(
+    found: Adaptation, fit: Fit, problem: MotionProblem, progress: Progress | None
+) -> Adaptation:
+    """The same, or where limbs whirl what weighed torques make of it, if that is calmer: by metres
+    alone guards and rows that bend can swing a light arm up from step to step. A limb whose torques
+    the artist limits swings as it will."""
+    solution = problem.requests.solution
+    weighed = solution.method is not Method.IMPLICIT or solution.dynamics is Dynamics.REDUCED
+    if weighed or problem.requests.torques or not found.solved:
+        return found
+    if not whirls(found.motion, fit.motion):
+        return found
+    again = adapt(fit, problem.weighing_torques(), progress=progress)
+    fast = fastest_joint(found.motion)
+    calmer = FASTER * fastest_joint(again.motion) < fast
+    calmer = calmer and _shortcomings(again) <= _shortcomings(found)
+    return replace(_after(found, again), whirled=fast) if calmer else _after(again, found)
 
 
 def _possible(fit: Fit, problem: MotionProblem) -> Setup:

@@ -126,7 +126,8 @@ class Report:
     unseen_support: where something unseen carries the body. let_go: contacts that the fit found
     no way to hold. accepted_contacts: those that it holds near enough to their places.
     missed_contacts: those that the written keys do not show where they were solved to be.
-    lifted_flights: where nothing touches for longer as contacts were lifted.
+    lifted_flights: where nothing touches for longer as contacts were lifted. whirled_m_s: how fast
+    a joint would go, had torques not been weighed for that; None where they were not.
     """
 
     status: Status
@@ -158,6 +159,7 @@ class Report:
     times: TimeMap
     stages: tuple[StageReport, ...] | None = field(default=None, metadata=OMIT_NONE)
     keys: KeysReport | None = field(default=None, metadata=OMIT_NONE)
+    whirled_m_s: float | None = field(default=None, metadata=OMIT_NONE)
     loop: LoopReport | None = field(default=None, metadata=OMIT_NONE)
     unseen_support: tuple[UnseenSupportReport, ...] = ()
     let_go: tuple[LetGoReport, ...] = ()
