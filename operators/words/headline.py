@@ -141,7 +141,7 @@ def lifted_lines(report: Report) -> list[str]:
         f"Without what {' and '.join(f'“{name}”' for name in each.lifts)} "
         f"{'lifts' if len(each.lifts) == 1 else 'lift'} nothing touches from frame "
         f"{each.first_frame:.0f} to {each.last_frame:.0f}: the body flies for "
-        f"{each.adapted_s:.2f} s there, with it for {each.recorded_s:.2f} s"
+        f"{each.without_s:.2f} s there, with it for {each.with_contacts_s:.2f} s"
         for each in report.lifted_flights
     ]
 

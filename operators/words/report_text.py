@@ -60,16 +60,17 @@ def as_text(report: Report) -> str:
 
 
 def joint_lines(report: Report) -> list[str]:
-    """The joints that changed most against the recording, and why they do not whirl: lines."""
+    """The joints that changed most against the recording, and one that is too fast: lines."""
     told = [
         f"{each.bone} {each.change_deg:.0f}° (frame {each.frame:.0f})"
         for each in report.joint_changes
         if each.change_deg >= LEAST_TURN
     ]
     lines = [f"Joints changed most: {', '.join(told)}"] if told else []
-    if report.whirled_m_s is not None:
-        speed = f"{report.whirled_m_s:.0f} m/s"
-        lines.append(f"Joints would whirl at {speed}, so changes of torques were weighed as well")
+    if (fast := report.fast_joint) is not None:
+        speed = f"{fast.bone} {'would move' if fast.calmed else 'moves'} at {fast.speed:.0f} m/s"
+        cure = ", so it was solved again with torques that change less" if fast.calmed else ""
+        lines.append(f"{speed} beside the body, faster than any person's limb{cure}")
     return lines
 
 

@@ -1,4 +1,6 @@
-"""How fast joints go: limbs that whirl as nobody's do."""
+"""How fast joints go: faster than a person's, where limbs are thrown about."""
+
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,14 +13,25 @@ FAST = 10.0
 FASTER = 1.5  # times the recording's fastest joint: who throws or sprints is fast already
 
 
-def fastest_joint(motion: Motion) -> float:
-    """The greatest speed of a joint centre seen from the centre of mass, m/s."""
+@dataclass(frozen=True)
+class JointSpeed:
+    """Speed of a body's joint centre seen from the centre of mass, m/s."""
+
+    body: int
+    speed: float
+
+
+def fastest_joint(motion: Motion) -> JointSpeed:
+    """The fastest joint of a motion, when it is fastest."""
     times = np.linspace(0.0, motion.duration, 2 + int(motion.duration * SAMPLING_RATE))
-    steps = np.linalg.norm(np.diff(motion.pose(times).centres, axis=0), axis=2)
-    return float(steps.max() / (times[1] - times[0]))
+    steps = np.linalg.norm(np.diff(motion.pose(times).centres, axis=0), axis=2).max(axis=0)
+    body = int(steps.argmax())
+    return JointSpeed(body, float(steps[body] / (times[1] - times[0])))
 
 
-def whirls(motion: Motion, recorded: Motion) -> bool:
-    """Whether a joint goes faster than a person's, and much faster than any of the recording's."""
-    speed = fastest_joint(motion)
-    return speed > FAST and speed > FASTER * fastest_joint(recorded)
+def too_fast(motion: Motion, recorded: Motion) -> JointSpeed | None:
+    """The fastest joint, where it goes faster than a person's and much faster than any of the
+    recording's."""
+    fastest = fastest_joint(motion)
+    limit = max(FAST, FASTER * fastest_joint(recorded).speed)
+    return fastest if fastest.speed > limit else None

@@ -49,6 +49,8 @@ class BoundedStep:
     ) -> None:
         self._factor, self._columns = factor, columns
         self._begins, self._series = begins, series
+        self._order = np.empty(len(series), dtype=int)  # of each row, series by series, in time
+        self._order[np.lexsort((begins, series))] = np.arange(len(series))
         self.lower, self.upper = bounds
         self._tolerance = STEP_TOLERANCE * tolerance
         self.multipliers = np.zeros(len(tolerance))
@@ -98,12 +100,13 @@ class BoundedStep:
     def _peaks(self, rows: IntArray, off: FloatArray) -> IntArray:
         """Those of rows (m,) that are no less far off than what is next to them in their series:
         who brings an arm out of the trunk brings it out at the instants beside as well."""
-        rows = rows[np.lexsort((self._begins[rows], self._series[rows]))]
-        alike = self._series[rows[1:]] == self._series[rows[:-1]]
+        rows = rows[np.argsort(self._order[rows])]
+        beside = self._series[rows[1:]] == self._series[rows[:-1]]
+        beside &= np.diff(self._order[rows]) == 1
         rises = off[rows[1:]] > off[rows[:-1]]
         peaks = np.ones(len(rows), dtype=bool)
-        peaks[1:] &= ~alike | rises
-        peaks[:-1] &= ~(alike & rises)
+        peaks[1:] &= ~beside | rises
+        peaks[:-1] &= ~(beside & rises)
         return np.asarray(rows[peaks])
 
     def _add(self, rows: IntArray) -> None:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
+from ..data.constants import STANDARD_GRAVITY
 from ..data.row_kinds import RowKind
 from ..numerics.block_banded import BlockBanded, CholeskyFactor
 from ..numerics.tied_factor import Factor, TiedFactor
@@ -61,7 +62,8 @@ class Remains:
 
 
 class LinearisedProblem:
-    """Rows linearised at one point, with the factor of W + rho J'J, ready for steps.
+    """Rows linearised at one point, with the factor of A = W + rho J'J + s L'L, L the rows of limp
+    joints' torques (limp_torques.py), ready for steps.
 
     metric: W. basis: (n_block, k) the changes of a block that are allowed, None all. last:
     what the problem before leaves.
@@ -83,7 +85,8 @@ class LinearisedProblem:
         scale = by_kind(rows.kind[self._equal], ROW_SCALES)
         first = transcription.basis.first_coefficient
         self._equalities = SpanRows.of(rows, self._equal, scale, first, basis)
-        self._limp = LimpTorques.of(rows, first, basis)
+        weight = transcription.character.mass * STANDARD_GRAVITY
+        self._limp = LimpTorques.of(rows, weight, first, basis)
         self._matrix = self._system(None if last is None else last.matrix)
         self._factor: Factor = self._factored()
         if transcription.seam is not None:
@@ -93,7 +96,7 @@ class LinearisedProblem:
         self._bound(transcription, rows, None if last is None else last.sides)
 
     def _system(self, into: BlockBanded | None = None) -> BlockBanded:
-        """W + rho J'J, and what limp joints add."""
+        """A, see above."""
         system = self._metric.copy(into=into)
         self._equalities.add_normal(system, PENALTY)
         self._limp.add_normal(system)
@@ -206,15 +209,15 @@ class LinearisedProblem:
         multipliers: FloatArray | None = None,
         sweeps: int = MAX_SWEEPS,
         *,
-        aimed: bool = False,
+        limp_to_middle: bool = False,
     ) -> KktStep:
-        """Augmented Lagrangian: repeat d = -(W + rho J'J)^-1 (g + J'(y + rho r)) within the bounds,
+        """Augmented Lagrangian: repeat d = -A^-1 (g + J'(y + rho r) + s L'l) within the bounds,
         y += rho (r + J d), until the linearised equalities hold a thousand times better than
         before, or well within their tolerances. Rows that bounds leave little room settle slowly,
         which Anderson acceleration mends. value: (R,). gradient: g (K, n_block), None for the
         minimum-norm step. multipliers: y to begin with (R,), None zero. sweeps: at most so many.
-        aimed: whether limp joints' torques have a target; else they are only held back, which
-        shifts no minimum.
+        limp_to_middle: whether l is how far limp joints' torques are off the middle of their
+        bounds; else they are only held back, l = 0, which shifts no minimum.
         """
         windows = self._equalities
         r = np.zeros(windows.J.shape[:2])
@@ -228,7 +231,7 @@ class LinearisedProblem:
         residual = r
         enough = SWEEP_REST * self._scaled(self._tolerance, self._equal)
         enough = np.maximum(enough, SWEEP_REDUCTION * float(np.abs(residual).max()))
-        off = self._limp.off(value) if aimed else self._limp.none
+        off = self._limp.off(value) if limp_to_middle else self._limp.none
         at, accelerated = self._scaled(value, self._free), Anderson()
         z = at
         for sweep in range(sweeps):

@@ -22,7 +22,7 @@ from ..numerics.block_banded import BlockBanded
 from ..transcription.rows import Rows
 from .span_rows import SpanRows
 
-NARROW = 2.5e-3  # BW·m between bounds of a torque: those of limp joints from 16 kg on
+NARROW = 0.5  # N·m between bounds of a torque: those of limp joints have 0.4
 # A thousandth of an equality's: with a tenth of that programs are larger; with three times it and
 # more what the rows cannot do, as a spline is no free swing, is paid for with joints' ranges.
 PRICE = 20.0
@@ -37,10 +37,11 @@ class LimpTorques:
     jacobian: SpanRows
 
     @staticmethod
-    def of(rows: Rows, first: IntArray, basis: FloatArray | None) -> "LimpTorques":
-        """first: (S,) first block of each span. basis: see LinearisedProblem."""
+    def of(rows: Rows, weight: float, first: IntArray, basis: FloatArray | None) -> "LimpTorques":
+        """weight: the body's, N. first: (S,) first block of each span. basis: see
+        LinearisedProblem."""
         torques = (rows.kind == RowKind.TORQUE) & ~rows.equal
-        chosen = np.flatnonzero(torques & (rows.upper - rows.lower < NARROW))
+        chosen = np.flatnonzero(torques & (weight * (rows.upper - rows.lower) < NARROW))
         middle = 0.5 * (rows.lower + rows.upper)[chosen]
         jacobian = SpanRows.of(rows, chosen, np.ones(len(chosen)), first, basis)
         return LimpTorques(chosen, middle, jacobian)

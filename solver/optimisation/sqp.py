@@ -271,7 +271,7 @@ class _ChordIterate:
 
     def _step(self, linearised: LinearisedProblem) -> tuple[FloatArray, float]:
         """The step (K, n_block), and how much of it turns no joint too far."""
-        d = linearised.step(self._value, aimed=True).d
+        d = linearised.step(self._value, limp_to_middle=True).d
         turn = float(np.abs(d[:, self.feasible.transcription.layout.angles]).max())
         return d, self._max_turn / turn if turn > self._max_turn else 1.0
 

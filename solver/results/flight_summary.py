@@ -72,8 +72,8 @@ def lifted_flights(setup: Setup) -> Iterator[LiftedFlight]:
                 lifts=tuple(lifts),
                 first_frame=scene_frame(fit, now.start),
                 last_frame=scene_frame(fit, now.end),
-                recorded_s=sum(inside),
-                adapted_s=now.end - now.start,
+                with_contacts_s=sum(inside),
+                without_s=now.end - now.start,
             )
 
 

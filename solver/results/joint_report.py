@@ -5,7 +5,8 @@ from math import degrees
 import numpy as np
 
 from ..arrays import FloatArray
-from ..data.reports.joints import JointChange, RecordedRange
+from ..data.reports.joints import FastJoint, JointChange, RecordedRange
+from ..human.limb_speed import too_fast
 from ..numerics.rotations import rotation_vector
 from ..stages.implicit import Adaptation
 from .flight_summary import scene_frame
@@ -51,3 +52,16 @@ def recorded_ranges(adaptation: Adaptation) -> tuple[RecordedRange, ...]:
         RecordedRange(each.name, degrees(each.amount), scene_frame(adaptation.fit, each.time))
         for each in human.recorded
     )
+
+
+def fast_joint(adaptation: Adaptation) -> FastJoint | None:
+    """The joint of a person that is too fast, or would be; None where none is."""
+    if adaptation.setup.human is None:
+        return None
+    bodies = adaptation.motion.transcription.character.bodies
+    fast = too_fast(adaptation.motion, adaptation.fit.motion)
+    if fast is not None:
+        return FastJoint(bodies[fast.body].bone, fast.speed, calmed=False)
+    if (calmed := adaptation.calmed) is not None:
+        return FastJoint(bodies[calmed.body].bone, calmed.speed, calmed=True)
+    return None

@@ -61,7 +61,7 @@ from .flight_summary import (
     recorded_apex,
     scene_frame,
 )
-from .joint_report import joint_changes, recorded_ranges
+from .joint_report import fast_joint, joint_changes, recorded_ranges
 from .moving_ground import moving_ground
 from .npz_export import instants
 from .torque_curve import exact_torques, torque_curve
@@ -119,7 +119,7 @@ def report(
         durations=adaptation.setup.durations,
         phases=_phases(adaptation),
         times=time_map(adaptation),
-        whirled_m_s=adaptation.whirled,
+        fast_joint=fast_joint(adaptation),
         stages=None if stages is None else tuple(stages),
         unseen_support=tuple(unseen_support(fit, motion)),
         let_go=tuple(let_go(fit)),

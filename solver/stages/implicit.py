@@ -17,7 +17,7 @@ from ..data.solver_options import Dynamics, Method, ObjectiveKind
 from ..data.status import Durations, Status
 from ..fitting.fit import ADAPT_TOLERANCE, Fit, SolvedMotion
 from ..fitting.knot_refinement import refine
-from ..human.limb_speed import FASTER, fastest_joint, whirls
+from ..human.limb_speed import JointSpeed, fastest_joint, too_fast
 from ..optimisation.guards import Guard, guarded, in_the_way
 from ..optimisation.sqp import MAX_STEPS, Outcome, Progress, Stopped, restore
 from ..transcription.constraint import DenseViolation, dense_violation, exchange
@@ -38,6 +38,7 @@ MAX_SQP_ITERATIONS = 60  # after which there is no further attempt
 MAX_EXCHANGES = 4
 MAX_GUARD_ROUNDS = 8  # the same where there are guards: one limb makes way for the next
 MAX_GUARD_STEPS = 10  # after which what is in the way is given up
+CALMER = 1.5  # times slower, than the joint that was too fast: what is as near is left as it is
 MOST_FURTHER = 0.1  # rad, by which rows may take another joint further beyond its range
 SAME_PLACE = 1e-4  # m
 # What no body can do: more in each other than a forearm is thick, and no joint bends so far beyond.
@@ -53,8 +54,8 @@ class Adaptation(SolvedMotion):
     stuck: where the steps failed, None where they did not; the motion is then the last on the way
     that obeys physics, `reached` the share of the way that it went. gain: the explicit solution's
     objective in shares of that at its start; None where there was none. stood: where the contacts
-    stand of a motion short of its target, None where they are at it. whirled: m/s of the fastest
-    joint without torques weighed, where that is why they are; else None.
+    stand of a motion short of its target, None where they are at it. calmed: the joint that was too
+    fast without torques weighed, where that is why they are; else None.
     """
 
     fit: Fit
@@ -63,7 +64,7 @@ class Adaptation(SolvedMotion):
     reached: float = 1.0
     gain: float | None = None
     stood: Standing | None = None
-    whirled: float | None = None
+    calmed: JointSpeed | None = None
 
     @property
     def track(self) -> PoseTrack:
@@ -86,8 +87,8 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
     tried with the recorded ones, and the better of both returned; a loop keeps these, for it lasts
     whole frames. Raises SeamStanceMoved, NotInLoop of a loop. A solve that fails is returned with
     the best motion found and a status that says so; one that `progress` ends by raising Stopped,
-    with the motion as it stood. Where limbs whirl as nobody's do it is solved again with torques
-    weighed, and the calmer motion returned.
+    with the motion as it stood. Where a joint goes faster than any person's it is solved again with
+    torques weighed, and that motion returned if it is much calmer.
     """
     setup = _possible(fit, problem)
     _require_closed(setup)
@@ -112,20 +113,23 @@ def _after(worse: Adaptation, better: Adaptation) -> Adaptation:
 def _calmed(
     found: Adaptation, fit: Fit, problem: MotionProblem, progress: Progress | None
 ) -> Adaptation:
-    """The same, or where limbs whirl what weighed torques make of it, if that is calmer: by metres
-    alone guards and rows that bend can swing a light arm up from step to step. A limb whose torques
-    the artist limits swings as it will."""
+    """The same, or where a joint is too fast what weighed torques make of it, if that is much
+    calmer: by metres alone guards and rows that bend can swing a light arm up from step to step. A
+    limb whose torques the artist limits swings as it will."""
     solution = problem.requests.solution
-    weighed = solution.method is not Method.IMPLICIT or solution.dynamics is Dynamics.REDUCED
-    if weighed or problem.requests.torques or not found.solved:
+    plain = solution.method is Method.IMPLICIT and solution.dynamics is not Dynamics.REDUCED
+    if not (plain and solution.human and found.solved) or problem.requests.torques:
         return found
-    if not whirls(found.motion, fit.motion):
+    fast = too_fast(found.motion, fit.motion)
+    if fast is None:
         return found
-    again = adapt(fit, problem.weighing_torques(), progress=progress)
-    fast = fastest_joint(found.motion)
-    calmer = FASTER * fastest_joint(again.motion) < fast
+    try:
+        again = adapt(fit, problem.weighing_torques(), progress=progress)
+    except np.linalg.LinAlgError:  # what was found stands, and its report tells the speed
+        return found
+    calmer = CALMER * fastest_joint(again.motion).speed < fast.speed
     calmer = calmer and _shortcomings(again) <= _shortcomings(found)
-    return replace(_after(found, again), whirled=fast) if calmer else _after(again, found)
+    return replace(_after(found, again), calmed=fast) if calmer else _after(again, found)
 
 
 def _possible(fit: Fit, problem: MotionProblem) -> Setup:

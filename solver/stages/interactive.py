@@ -204,7 +204,9 @@ class Follower:
         stale = False
         for _ in range(MOST_STEPS):
             before = linearised.violation(value)
-            step = linearised.step(value + self._secant.along(way), sweeps=SWEEPS, aimed=True)
+            step = linearised.step(
+                value + self._secant.along(way), sweeps=SWEEPS, limp_to_middle=True
+            )
             expected, x = value + step.change, x + step.d
             value = feasible.values(x)
             after = linearised.violation(value)

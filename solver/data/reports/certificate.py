@@ -51,7 +51,7 @@ class CertificateLine:
 
     @property
     def as_recorded(self) -> bool:
-        """Whether it does not hold, but in the recording is no better."""
-        if self.holds or self.recorded is None:
+        """Whether it does not hold, but in the recording neither, and is no better there."""
+        if self.holds or self.recorded is None or self.recorded <= self.limit:
             return False
         return self.value <= AS_RECORDED * self.recorded

@@ -22,3 +22,15 @@ class RecordedRange:
     name: str
     beyond_deg: float
     frame: float
+
+
+@dataclass(frozen=True)
+class FastJoint:
+    """A joint that goes faster than a person's, seen from the centre of mass, m/s.
+
+    calmed: whether it would have, had torques not been weighed for that.
+    """
+
+    bone: str
+    speed: float
+    calmed: bool

@@ -40,13 +40,14 @@ class JumpReport:
 
 @dataclass(frozen=True)
 class LiftedFlight:
-    """A flight that is longer for what was lifted off the floor, by these requests' names."""
+    """A flight that is longer for what was lifted off the floor, by these requests' names: how long
+    it is, and would be with these contacts."""
 
     lifts: tuple[str, ...]
     first_frame: float
     last_frame: float
-    recorded_s: float
-    adapted_s: float
+    with_contacts_s: float
+    without_s: float
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ from .constraints import (
     UnseenSupportReport,
 )
 from .dynamics import DenseResiduals, ForcesReport, TorquesReport, TorqueUse
-from .joints import JointChange, RecordedRange
+from .joints import FastJoint, JointChange, RecordedRange
 from .jumps import JumpReport, LiftedFlight, PhaseReport, TimeMap
 from .keys import KeysReport, MissedContact
 from .loop import LoopReport
@@ -126,8 +126,8 @@ class Report:
     unseen_support: where something unseen carries the body. let_go: contacts that the fit found
     no way to hold. accepted_contacts: those that it holds near enough to their places.
     missed_contacts: those that the written keys do not show where they were solved to be.
-    lifted_flights: where nothing touches for longer as contacts were lifted. whirled_m_s: how fast
-    a joint would go, had torques not been weighed for that; None where they were not.
+    lifted_flights: where nothing touches for longer as contacts were lifted. fast_joint: one that
+    goes faster than a person's, or would.
     """
 
     status: Status
@@ -159,7 +159,7 @@ class Report:
     times: TimeMap
     stages: tuple[StageReport, ...] | None = field(default=None, metadata=OMIT_NONE)
     keys: KeysReport | None = field(default=None, metadata=OMIT_NONE)
-    whirled_m_s: float | None = field(default=None, metadata=OMIT_NONE)
+    fast_joint: FastJoint | None = field(default=None, metadata=OMIT_NONE)
     loop: LoopReport | None = field(default=None, metadata=OMIT_NONE)
     unseen_support: tuple[UnseenSupportReport, ...] = ()
     let_go: tuple[LetGoReport, ...] = ()

@@ -227,20 +227,28 @@ def test_rows_to_begin_with_change_the_way_not_the_answer(seed: int) -> None:
 
 @settings(max_examples=20, deadline=None)
 @given(SEED, st.integers(1, 3))
-def test_only_the_peaks_of_a_series_join_and_the_answer_is_the_same(seed: int, count: int) -> None:
-    problem, joined = Problem(seed, 6, 8), []
+def test_series_change_the_way_not_the_answer(seed: int, count: int) -> None:
+    problem = Problem(seed, 6, 8)
+    found = settled(problem, problem.step(series=count))
+    alone = settled(problem, problem.step())
+    assert found == pytest.approx(alone, abs=1e-5 * (1.0 + np.abs(alone).max()))
+
+
+def test_of_a_series_all_peaks_join_at_once_and_nothing_beside_them() -> None:
+    problem = Problem(0, 6, 8)
+    problem.z[:] = 0.0
+    problem.lower = np.array([1.0, 3.0, 2.0, -1.0, 2.0, -1.0, 1.0, 1.5])
+    problem.upper = np.full(8, np.inf)
+    joined: list[list[int]] = []
 
     def columns(rows: IntArray) -> LocalColumns:
-        joined.append(len(rows))
+        joined.append(rows.tolist())
         return Problem.columns(problem, rows)
 
-    alone = settled(problem, problem.step())
-    problem.columns = columns  # type: ignore[method-assign]
-    found = settled(problem, problem.step(series=count))
-    assert found == pytest.approx(alone, abs=1e-5 * (1.0 + np.abs(alone).max()))
-    off = np.abs(violation(problem.z, problem.lower, problem.upper))
-    longest = -(-8 // count)
-    assert joined[:1] <= [min(np.count_nonzero(off), count * -(-longest // 2))]
+    bounded = problem.step(series=1)
+    bounded._columns = columns
+    corrected(problem, bounded)
+    assert joined[0] == [1, 4, 7]
 
 
 def test_a_step_within_its_bounds_is_left_alone() -> None:

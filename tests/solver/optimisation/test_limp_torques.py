@@ -33,7 +33,7 @@ def a_step(setup: Setup, after: int) -> tuple[KktStep, BoolArray, FloatArray]:
     feasible, x = setup.feasible_set(setup.start.transcription), setup.start.x
     x = restore(feasible, setup.metric, x, stage="test", max_steps=after).x
     rows = feasible.rows(x)
-    step = feasible.linearise(rows, setup.metric).step(rows.value, aimed=True)
+    step = feasible.linearise(rows, setup.metric).step(rows.value, limp_to_middle=True)
     left = np.abs(rows.violation(rows.value + step.change)) / rows.tolerance
     return step, rows.kind == RowKind.TORQUE, left
 
@@ -67,7 +67,7 @@ def test_an_objectives_minimum_stays_where_it_is(limp: Setup) -> None:
     inside[torques] = (0.7 * rows.lower + 0.3 * rows.upper)[torques]
     linearised = feasible.linearise(rows, limp.metric)
     assert not linearised.step(inside).d.any()
-    assert linearised.step(inside, aimed=True).d.any()
+    assert linearised.step(inside, limp_to_middle=True).d.any()
 
 
 @pytest.mark.slow

@@ -148,16 +148,17 @@ def test_what_the_recording_has_alike_is_told_apart_from_what_an_edit_did() -> N
     assert [each.recorded for each in own] == pytest.approx([each.value for each in own])
     assert line(FIT_WORST).recorded is None
 
-    def text(**values: float) -> list[str]:
-        """The headline where these lines have a limit of 1, and 2 in the recording."""
+    def text(recorded: float = 2.0, **values: float) -> list[str]:
+        """The headline where these lines have a limit of 1, and so much in the recording."""
         made = tuple(
-            replace(each, value=values[each.item.name], limit=1.0, holds=False, recorded=2.0)
+            replace(each, value=values[each.item.name], limit=1.0, holds=False, recorded=recorded)
             for each in found().certificate
             if each.item.name in values
         )
         return headline(replace(found(), certificate=made))
 
     assert text(KNEE_TORQUE=2.0)[0].endswith("lines does not hold, as in the recording.")
+    assert text(0.99, KNEE_TORQUE=1.01)[0].endswith("lines does not hold.")
     told = text(KNEE_TORQUE=2.05, HIP_TORQUE=1.5, ANKLE_TORQUE=5.0)
     assert told[0].endswith("3 of the certificate's 3 lines do not hold, 2 as in the recording.")
     first = next(each for each in told if "torque" in each)

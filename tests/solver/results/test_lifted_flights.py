@@ -23,8 +23,8 @@ def test_without_a_landing_the_flight_goes_on() -> None:
     assert found.lifts == ("One leg",)
     assert found.first_frame == scene_frame(fit, flight.start)
     assert found.last_frame == scene_frame(fit, ground.end)
-    assert abs(found.recorded_s - (flight.end - flight.start)) < 1e-9
-    assert abs(found.adapted_s - (ground.end - flight.start)) < 1e-9
+    assert abs(found.with_contacts_s - (flight.end - flight.start)) < 1e-9
+    assert abs(found.without_s - (ground.end - flight.start)) < 1e-9
 
 
 def test_where_the_other_foot_stands_no_flight_is_longer() -> None:
