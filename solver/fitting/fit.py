@@ -238,10 +238,11 @@ def _valid_nearby(
     if transcription.seam is not None:
         x = transcription.seam.closed(x, cost.expand(x)[1])
     feasible = FeasibleSet(transcription, recorded.places)
-    outcomes = [
-        project(feasible, cost, x, stage="fit", max_steps=MAX_PROJECTION_STEPS, progress=progress)
-    ]
-    metric = metric_of(feasible.motion(outcomes[0].x))
+    first, _ = project(
+        feasible, cost, x, stage="fit", max_steps=MAX_PROJECTION_STEPS, progress=progress
+    )
+    outcomes = [first]
+    metric = metric_of(feasible.motion(first.x))
     for _ in range(1 + MAX_PLACE_UPDATES):
         last = restore(feasible, metric, outcomes[-1].x, stage="fit", progress=progress)
         outcomes.append(last)
@@ -296,7 +297,14 @@ def _improved(
     for guards in ((human,), ()):
         wider = partial(with_guards, guards)
         feasible = wider(plain, finer.x)
-        nearer, metric = _nearer(feasible, cost_of(), finer.x, progress)
+        nearer, metric = project(
+            feasible,
+            cost_of(),
+            finer.x,
+            stage="fit",
+            max_steps=MAX_IMPROVEMENTS,
+            progress=progress,
+        )
         restored = restore(
             feasible,
             metric,
@@ -311,14 +319,6 @@ def _improved(
             return [nearer, restored, *refine(restored, metric_of, ADAPT_TOLERANCE, progress)]
     restored = restore(plain, metric_of(finer), finer.x, stage="fit", progress=progress)
     return [restored, *refine(restored, metric_of, FIT_TOLERANCE, progress)]
-
-
-def _nearer(
-    feasible: FeasibleSet, cost: TrackingCost, x: FloatArray, progress: Progress | None
-) -> tuple[Outcome, BlockBanded]:
-    """Steps towards the recording, and the cost's own metric where they end."""
-    nearer = project(feasible, cost, x, stage="fit", max_steps=MAX_IMPROVEMENTS, progress=progress)
-    return nearer, cost.expand(nearer.x)[1]
 
 
 def _off(motion: Motion, performance: Performance) -> float:

@@ -22,11 +22,11 @@ def project(
     stage: str,
     max_steps: int,
     progress: Progress | None = None,
-) -> Outcome:
+) -> tuple[Outcome, BlockBanded]:
     """Projection: SQP steps that minimise an objective in the feasible set (thesis 4.2).
 
-    x: (K, n_block). Ends when a step changes the objective little and the rows nearly hold;
-    `restore` finishes what is left.
+    x: (K, n_block). max_steps: at least 1. Ends when a step changes the objective little and the
+    rows nearly hold; `restore` finishes what is left. The Hessian of its last step, too.
     """
     steps: list[Step] = []
     status = Status.TOO_MANY_STEPS
@@ -57,7 +57,8 @@ def project(
         if length == 0.0 or (near and little):
             status = Status.SOLVED
             break
-    return feasible.outcome(x, status, steps, violation)
+    assert hessian is not None
+    return feasible.outcome(x, status, steps, violation), hessian
 
 
 @dataclass(frozen=True)
