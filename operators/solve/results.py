@@ -220,24 +220,29 @@ class DiscardOperator(_OfSettledResult, bpy.types.Operator):
         remove_slot(result)
         bpy.data.actions.remove(result)
         if recorded is not None:
-            _leave_as_before(recorded, last, scene_end)
+            _leave_as_before(armature, recorded, last, scene_end)
         settings.adapted = None  # the edit at work is no other result's
         settings.status = ""
         self.report({"INFO"}, f"Discarded {name}")
         return {"FINISHED"}
 
 
-def _leave_as_before(recorded: bpy.types.Action, last: int, scene_end: int) -> None:
-    """Once no result of a recording is left, its fake user and the scene's end are what they were.
+def _leave_as_before(
+    armature: bpy.types.Object, recorded: bpy.types.Action, last: int, scene_end: int
+) -> None:
+    """The scene ends as it did before a result, or with the longest that is left of its recording;
+    once none is left, the recording's fake user is what it was.
 
     last: the last frame of the one that went. scene_end: the scene's before that was made longer
     for it, 0 where it was not.
     """
     left, scene = results_from(recorded), current_scene()
-    if left and scene_end:
-        action_settings(left[-1]).scene_end = scene_end
-    elif scene_end and scene.frame_end == last:  # nor has the artist changed it
-        scene.frame_end = scene_end
+    if left and scene_end:  # the scene goes back to the first of these once all are gone
+        heir = action_settings(left[-1])
+        heir.scene_end = min(scene_end, heir.scene_end or scene_end)
+    if scene_end and scene.frame_end == last:  # nor has the artist changed it
+        ends = (ceil(shown_range(armature, each)[1]) for each in left)
+        scene.frame_end = min(last, max([scene_end, *ends]))
     if not left:
         unguard(recorded)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import ceil
 from pathlib import Path
 
 import numpy as np
@@ -144,6 +145,54 @@ def test_the_last_discard_leaves_fake_user_and_end_of_the_scene_as_they_were(
         assert recorded.use_fake_user == left
     assert scene.frame_end == end
     assert "hangtime_guarded" not in recorded
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("newest_first", [True, False])
+@pytest.mark.parametrize("longer_last", [True, False])
+def test_discarding_results_of_two_lengths_leaves_the_end_of_the_scene_as_it_was(
+    analysed: bpy.types.Object, newest_first: bool, longer_last: bool
+) -> None:
+    recorded, scene = current_action(analysed), bpy.context.scene
+    end = scene.frame_end = round(recorded.frame_range[1])
+    lasts: dict[str, int] = {}
+    for forward in (0.1, 0.4) if longer_last else (0.4, 0.1):
+        analysed.hangtime.stances["ground 2"].forward = forward
+        assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+        made = current_action(analysed)
+        lasts[made.name] = ceil(made.frame_range[1])
+        assert bpy.ops.hangtime.show_recording() == {"FINISHED"}
+    assert (list(lasts.values()) == sorted(lasts.values())) == longer_last
+    assert end < min(lasts.values()) < max(lasts.values()) == scene.frame_end
+    names = reversed(lasts) if newest_first else iter(lasts)
+    first, second = names
+    assert bpy.ops.hangtime.show_take(action=first) == {"FINISHED"}
+    assert bpy.ops.hangtime.discard() == {"FINISHED"}
+    assert scene.frame_end == lasts[second]
+    assert bpy.ops.hangtime.show_take(action=second) == {"FINISHED"}
+    assert bpy.ops.hangtime.discard() == {"FINISHED"}
+    assert scene.frame_end == end
+
+
+@pytest.mark.slow
+def test_discard_leaves_fake_user_and_end_of_the_scene_also_after_loading(
+    analysed: bpy.types.Object, tmp_path: Path
+) -> None:
+    name, recorded, scene = analysed.name, current_action(analysed).name, bpy.context.scene
+    bpy.data.actions[recorded].use_fake_user = False
+    end = scene.frame_end = round(current_action(analysed).frame_range[1])
+    analysed.hangtime.stances["ground 2"].forward = 0.3
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    assert bpy.ops.hangtime.accept() == {"FINISHED"}
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "kept.blend"))
+    bpy.ops.wm.read_homefile(use_empty=True)
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "kept.blend"))
+    assert bpy.data.actions[recorded].use_fake_user
+    assert bpy.context.scene.frame_end > end
+    assert bpy.ops.hangtime.discard() == {"FINISHED"}
+    assert current_action(bpy.data.objects[name]).name == recorded
+    assert not bpy.data.actions[recorded].use_fake_user
+    assert bpy.context.scene.frame_end == end
 
 
 def test_a_linked_copy_that_discards_leaves_the_figure(adapted: bpy.types.Object) -> None:
