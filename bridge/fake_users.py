@@ -8,7 +8,11 @@ GUARDED = "hangtime_guarded"  # of actions that had no fake user; needs no regis
 
 
 def guard(action: bpy.types.Action) -> None:
-    """Have Blender keep an action in the file though nothing performs it."""
+    """Have Blender keep an action in the file though nothing performs it.
+
+    Who afterwards takes the fake user away and gives it again by hand is not told from this:
+    `unguard` takes it back all the same.
+    """
     if not action.use_fake_user:
         action.use_fake_user = action[GUARDED] = True
 

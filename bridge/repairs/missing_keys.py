@@ -17,6 +17,7 @@ from ..armature.actions import recorded_action, show
 from ..fake_users import free_copy, guard, unguard
 from ..played_strips import played_strip
 from ..properties.settings import action_settings, settings_of
+from ..takes.takes import results_from
 from .stored import FRAMES, findings
 
 NAME = "{} filled"
@@ -51,7 +52,7 @@ def put_in(
     play_to_end(current_scene(), end, span_of(made)[1])
     if shown != recorded and not shown.users:  # nothing was made of what was filled before
         bpy.data.actions.remove(shown)
-        if made == recorded:
+        if made == recorded and not results_from(recorded):
             unguard(recorded)
 
     def now(frame: float) -> int:

@@ -15,8 +15,10 @@ from hangtime.bridge.armature.fcurves import curves_of, put, table
 from hangtime.bridge.armature.keys_digest import keys_digest
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.constraints.motion_problem import problem_of, repaired_since
+from hangtime.bridge.fake_users import guard
 from hangtime.bridge.files.import_clip import import_clip
 from hangtime.bridge.recipe.problem import parse_recipe
+from hangtime.bridge.repairs.missing_keys import put_in
 from hangtime.bridge.repairs.placed_armature import repair
 from hangtime.bridge.repairs.stored import (
     applied,
@@ -27,10 +29,11 @@ from hangtime.bridge.repairs.stored import (
     look_at_examination,
 )
 from hangtime.bridge.rows.phases import unseen_frames
+from hangtime.bridge.takes.takes import derive
 from hangtime.operators.timeline.timeline_bars import rows_of
 from hangtime.solver.data.problem import Mend
 from hangtime.solver.doctor.examination.repair import as_asked, unplaced
-from hangtime.solver.doctor.repairs import Repairs, UpAxis
+from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis
 from hangtime.solver.doctor.stance.feet import FootFaultKind
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.blender.helpers.solids import add_row
@@ -197,6 +200,24 @@ def test_missing_frames_are_put_into_a_copy(jump, request) -> None:
     assert list(bpy.data.actions) == [recorded]
     assert settings.last_frame == 326
     assert applied(settings) == Repairs()
+
+
+def test_frames_left_out_again_leave_a_recording_its_fake_user_while_a_result_lives(
+    lacking,
+) -> None:
+    recorded, gap = lacking.animation_data.action, (MissingFrames(GAP, LACKS),)
+    recorded.use_fake_user = False
+    result = recorded.copy()
+    derive(result, recorded, lacking)
+    guard(recorded)
+    for left in (True, False):
+        put_in(lacking, gap, ())
+        assert lacking.animation_data.action != recorded
+        put_in(lacking, (), gap)
+        assert lacking.animation_data.action == recorded
+        assert recorded.use_fake_user == left
+        if left:
+            bpy.data.actions.remove(result)
 
 
 def test_missing_frames_are_not_put_into_a_strip(lacking) -> None:
