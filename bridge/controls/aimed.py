@@ -12,11 +12,11 @@ import numpy as np
 from ...solver.arrays import FloatArray
 from ...solver.body.character import Body
 from ...solver.data.recording import Bone, PoseTrack, Recording
+from ...solver.doctor.local_poses import angles_between
 from ...solver.skeleton.parts import Part, Segment
-from ..accessors import pose_of
 from ..armature.poses import sample
 from ..armature.read import recording_of
-from .driven import beside_keys, driven_of, is_driven, turned_by_drivers
+from .driven import acting_on, beside_keys, driven_of, is_driven, turned_by_drivers
 from .held import LOOKS, held_bones
 
 AIMABLE = (Part.NECK, Part.HEAD)
@@ -28,8 +28,9 @@ def aimed_bones(
     segments: Sequence[Segment],
     frames: FloatArray,
 ) -> tuple[str, ...]:
-    """Those of neck and head that something poses otherwise than their own keys do, at frames (T,)
-    of what the armature shows; none where controls pose the rest of the body.
+    """Those of neck and head, parents first, from the first on that something poses otherwise than
+    its own keys do, at frames (T,) of what the armature shows: what hangs on one goes where that
+    does. None where controls pose the rest of the body.
 
     bones: the recording's. segments: the body's, the pelvis first.
     """
@@ -42,7 +43,8 @@ def aimed_bones(
     held = held_bones(armature, above, frames)
     led = {*driven_of(armature, above), *turned_by_drivers(armature, [bodies[0], *above])}
     led.update(held[0] if held is not None else ())
-    return tuple(name for name in above if name in led)
+    first = next((i for i, name in enumerate(above) if name in led), len(above))
+    return tuple(above[first:])
 
 
 def without(track: PoseTrack, bones: Sequence[str]) -> PoseTrack:
@@ -54,11 +56,13 @@ def without(track: PoseTrack, bones: Sequence[str]) -> PoseTrack:
 
 @dataclass(frozen=True)
 class Aimed:
-    """Bones that are still aimed, and by what (names of constraints; none of drivers): how far they
-    turn from the solution at most, in which frame, and how far that takes the centre of mass."""
+    """Bones that are still aimed, and by what (names of constraints; whether by drivers): how far
+    they turn from the solution at most, in which frame, and how far that takes the centre of
+    mass."""
 
     bones: tuple[str, ...]
     constraints: tuple[str, ...]
+    drivers: bool
     degrees: float
     frame: float
     mm: float
@@ -66,26 +70,30 @@ class Aimed:
 
 def aimed_in(
     armature: bpy.types.Object, names: Sequence[str], track: PoseTrack, bodies: Sequence[Body]
-) -> Aimed:
-    """How a result that the armature shows differs from its solution by bones that are aimed.
+) -> Aimed | None:
+    """How a result that the armature shows differs from its solution by bones that are aimed; None
+    where none of them is a body of its own, as of a neck that is one body with the bone below.
 
-    track: the solution, these bones among it. bodies: of the figure.
+    track: the solution, its pelvis first. bodies: of the figure.
     """
+    moved = [name for name in names if name in track.bones]
+    if not moved:
+        return None
     rows = np.unique(np.linspace(0, len(track.frames) - 1, LOOKS).round().astype(int))
     at = track.frames[rows]
     shown = recording_of(armature, at, sample(armature, at))
-    turns = np.stack([track.rotations[rows, track.bones.index(name)] for name in names], axis=1)
-    now = shown.rotations[:, [shown.index(name) for name in names]]
-    cosines = 0.5 * (np.einsum("tbij,tbij->tb", now, turns) - 1.0)
-    angles = np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0))).max(axis=1)
-    shift = np.linalg.norm(_shift(shown, names, turns, bodies), axis=1)
-    posed = [
-        constraint for name in names for constraint in pose_of(armature).bones[name].constraints
-    ]
-    led = tuple(dict.fromkeys(each.name for each in posed if each.is_valid and not each.mute))
+    turns = np.stack([track.rotations[rows, track.bones.index(name)] for name in moved], axis=1)
+    now = shown.rotations[:, [shown.index(name) for name in moved]]
+    angles = np.degrees(angles_between(now, turns)).max(axis=1)
+    shift = np.linalg.norm(_shift(shown, moved, turns, bodies), axis=1)
     worst = int(angles.argmax())
     return Aimed(
-        tuple(names), led, float(angles[worst]), float(at[worst]), 1e3 * float(shift.max())
+        tuple(moved),
+        acting_on(armature, names),
+        not set(names).isdisjoint(turned_by_drivers(armature, [track.bones[0], *names])),
+        float(angles[worst]),
+        float(at[worst]),
+        1e3 * float(shift.max()),
     )
 
 

@@ -62,24 +62,35 @@ def constrained(armature: bpy.types.Object) -> set[str]:
     return found
 
 
+def acting_on(armature: bpy.types.Object, bones: Iterable[str]) -> tuple[str, ...]:
+    """Names of the constraints, limits among them, that may act on some of these bones."""
+    on, found = set(bones), list[str]()
+    for bone, constraint in _acting(armature, passive=True):
+        if not on.isdisjoint((bone.name, *chain_of(bone, constraint))):
+            found.append(constraint.name)
+    return tuple(dict.fromkeys(found))
+
+
 def _acting(
-    armature: bpy.types.Object,
+    armature: bpy.types.Object, *, passive: bool = False
 ) -> Iterator[tuple[bpy.types.PoseBone, bpy.types.Constraint]]:
-    """Constraints that have influence, or may come to it."""
+    """Constraints that have influence, or may come to it. passive: also those that move nothing by
+    themselves."""
     switched = _animated(armature)
-    for bone, constraint in constraints_of(armature):
+    for bone, constraint in constraints_of(armature, passive=passive):
         if constraint.influence > 0.0 or constraint.path_from_id("influence") in switched:
             yield bone, constraint
 
 
 def constraints_of(
-    armature: bpy.types.Object,
+    armature: bpy.types.Object, *, passive: bool = False
 ) -> Iterator[tuple[bpy.types.PoseBone, bpy.types.Constraint]]:
-    """The constraints that move bones wherever they have influence, with their bones."""
+    """The constraints that move bones wherever they have influence, with their bones. passive: also
+    those that move nothing by themselves."""
     for bone in pose_of(armature).bones:
         for constraint in bone.constraints:
-            passive = constraint.mute or constraint.type.startswith(_PASSIVE)
-            if not passive and constraint.is_valid:
+            moves = passive or not constraint.type.startswith(_PASSIVE)
+            if moves and not constraint.mute and constraint.is_valid:
                 yield bone, constraint
 
 

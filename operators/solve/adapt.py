@@ -31,6 +31,7 @@ from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ...bridge.recipe.keys import require_every_frame
 from ...bridge.recipe.result import require_return_after
 from ...bridge.repairs.stored import undoubted
+from ...bridge.rows.aimed_requests import require_unaimed
 from ...bridge.rows.choices import LoopRoot, WrittenAs
 from ...bridge.takes.options import loop_options, result_options
 from ...bridge.takes.write_result import (
@@ -182,8 +183,8 @@ class UseBestOperator(TaskOperator, bpy.types.Operator):
 def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     """The motion problem that the settings state, with the recording as it is.
 
-    Raises any Fault of reading and of a rig that cannot be written to, and RateChanged or
-    ChangedMeanwhile where it is not what was analysed.
+    Raises any Fault of reading and of a rig that cannot be written to, AimedBone, and RateChanged
+    or ChangedMeanwhile where it is not what was analysed.
     """
     armature = required_armature(context)
     settings = settings_of(armature)
@@ -192,14 +193,16 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     options = result_options(settings)
     require_return_after(options, span_of(settings, recording)[1])
     _require_loopable(armature)
-    yield from require_writable(armature, recording, span_of(settings, recording))
+    aimed = yield from require_writable(armature, recording, span_of(settings, recording))
     scene = yield from read_surfaces(armature, recording.frames)
     skin = (yield from read_bound(armature, recording.frames)).skin
     problem = problem_of(settings, recording, scene.objects, skin=skin)
+    if not problem.requests.body.limbs:  # an armature of its own performs those, and nothing aims
+        require_unaimed(problem.requests, aimed, recording.bones)
     apart = loop_options(settings) is not None or problem.requests.body.limbs
     if options.written_as is WrittenAs.SLOT and not apart:  # those are actions of their own
         require_slot(armature)
-    return Asked(armature.name, armature.session_uid, recording, problem, scene)
+    return Asked(armature.name, armature.session_uid, recording, problem, scene, aimed)
 
 
 def _require_analysed(armature: bpy.types.Object, recording: Recording) -> None:
@@ -215,15 +218,15 @@ def _require_analysed(armature: bpy.types.Object, recording: Recording) -> None:
 
 def require_writable(
     armature: bpy.types.Object, recording: Recording, span: tuple[float, float]
-) -> Incremental[None]:
+) -> Incremental[tuple[str, ...]]:
     """Before a solve takes its seconds. span: first and last frame that are adapted.
 
-    Neck and head may be aimed by constraints, and stay so (`aimed.py`).
+    Returns bones of neck and head that constraints or drivers aim, and that stay so (`aimed.py`).
     Controls are tried once for a recording, as that takes long and a drag's ghost waits for it.
     Raises PulledFromOutside, NoControls, DrivenBones, HeldBones, and as `map_anatomy`.
     """
     if not beside_keys(armature):
-        return
+        return ()
     settings = settings_of(armature)
     frames = recording.window(*span).frames
     segments = map_anatomy(recording.bones, chosen_parts(settings))
@@ -237,7 +240,7 @@ def require_writable(
         driven = yield from require_posable(armature, bodies, frames, showing_recorded(armature))
         session().tried = trying if driven else None
     if driven:
-        return
+        return aimed
     turned = turned_by_drivers(armature, bodies)
     if turned:
         raise DrivenBones(tuple(turned))
@@ -245,6 +248,7 @@ def require_writable(
         held = held_bones(armature, bodies, frames)
     if held is not None:
         raise HeldBones(*held)
+    return aimed
 
 
 def _require_loopable(armature: bpy.types.Object) -> None:

@@ -19,13 +19,20 @@ from .solving import SolveState, Solving
 @dataclass(frozen=True)
 class Asked:
     """A request: of which armature (its name then, and its number in this session), what its
-    recording and the scene's surfaces were, and what was asked."""
+    recording and the scene's surfaces were, what was asked, and which bones stay aimed."""
 
     armature: str
     uid: int
     recording: Recording
     problem: MotionProblem
     scene: SceneReading = field(default_factory=SceneReading)
+    aimed: tuple[str, ...] = ()
+
+    @property
+    def window(self) -> Recording:
+        """The frames of the recording that are adapted."""
+        assert self.problem.frames is not None
+        return self.recording.window(*self.problem.frames)
 
 
 class Running(Protocol):

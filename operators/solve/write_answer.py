@@ -7,11 +7,7 @@ from math import isclose
 import bpy
 
 from ...bridge.accessors import current_scene, play_to_end, present, shown_range, source_of
-from ...bridge.armature.actions import (
-    read_recorded_incrementally,
-    recorded_action,
-    showing_recorded,
-)
+from ...bridge.armature.actions import read_recorded_incrementally, recorded_action
 from ...bridge.armature.incremental import Incremental, complete
 from ...bridge.armature.poses import frames_per_second
 from ...bridge.armature.traces_store import keep
@@ -19,7 +15,7 @@ from ...bridge.armature.write import write_action
 from ...bridge.constraints.motion_problem import SAME_RATE
 from ...bridge.constraints.standing import missed_contacts
 from ...bridge.constraints.status import write_status
-from ...bridge.controls.aimed import aimed_bones, aimed_in, without
+from ...bridge.controls.aimed import aimed_in, without
 from ...bridge.controls.driven import is_driven
 from ...bridge.controls.held import held_bones
 from ...bridge.files.reproportioned import build_reproportioned
@@ -49,7 +45,6 @@ from ...bridge.takes.write_result import (
     lay_in_slot,
     write_adapted_incrementally,
 )
-from ...solver.body.anatomy import map_anatomy
 from ...solver.body.character import build_character
 from ...solver.body.proportions import changed_recording
 from ...solver.data.faults import ChangedMeanwhile, Fault, RateChanged
@@ -98,14 +93,11 @@ def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
     session().advance(SolveState.WRITING)
     limbs = asked.problem.requests.body.limbs
     if limbs:
-        within = asked.recording.window(*present(asked.problem.frames))
-        done = yield from _write_other(changed_recording(within, limbs), answer, armature)
+        done = yield from _write_other(changed_recording(asked.window, limbs), answer, armature)
     else:
-        aimed = _aimed(asked, armature)
-        written = replace(answer, track=without(answer.track, aimed))
+        written = replace(answer, track=without(answer.track, asked.aimed))
         done = yield from _write_own(asked, written, armature)
-        if aimed:
-            _tell_aimed(asked, armature, aimed, answer.track)
+        _tell_aimed(asked, armature, answer.track)
     remarks = note_surfaces(armature, asked, answer.report, stale)
     settings = settings_of(armature)
     ends = (present(each) for each in (recorded_action(armature), settings.adapted))
@@ -173,28 +165,19 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     return f"Wrote the {FORMS[options.written_as]} {action.name}"
 
 
-def _aimed(asked: Asked, armature: bpy.types.Object) -> tuple[str, ...]:
-    """Neck and head, where constraints aim them and go on so."""
-    segments = map_anatomy(asked.recording.bones, asked.problem.bones)
-    frames = asked.recording.window(*present(asked.problem.frames)).frames
-    with showing_recorded(armature)():
-        return aimed_bones(armature, asked.recording.bones, segments, frames)
-
-
-def _tell_aimed(
-    asked: Asked, armature: bpy.types.Object, bones: tuple[str, ...], track: PoseTrack
-) -> None:
-    """How far these bones are from the solution's track; where that counts, as a warning."""
+def _tell_aimed(asked: Asked, armature: bpy.types.Object, track: PoseTrack) -> None:
+    """How far bones that stay aimed are from the solution's track; where that counts, as a
+    warning."""
+    if not asked.aimed:
+        return
     problem, action = asked.problem, present(settings_of(armature).adapted)
-    window = asked.recording.window(*present(problem.frames))
     figure = build_character(
-        window, mass=problem.mass, table=problem.mass_table, chosen=problem.bones
+        asked.window, mass=problem.mass, table=problem.mass_table, chosen=problem.bones
     )
-    aimed = aimed_in(armature, bones, track, figure.bodies)
-    if aimed.mm > LEAST_SHIFT_MM:
-        _warn(armature, action, [aimed_line(aimed)])
-    else:
-        _warn(armature, action, [], [aimed_line(aimed)])
+    aimed = aimed_in(armature, asked.aimed, track, figure.bodies)
+    if aimed is not None:
+        far, line = aimed.mm > LEAST_SHIFT_MM, aimed_line(aimed)
+        _warn(armature, action, [line] * far, [line] * (not far))
 
 
 def _tell_unmet(armature: bpy.types.Object, action: bpy.types.Action, track: PoseTrack) -> None:

@@ -97,7 +97,8 @@ def polish_lines(polish: PlacedPolish | None) -> list[str]:
 
 def aimed_line(aimed: Aimed) -> str:
     """A line about neck and head that go on being aimed."""
-    by = f"constraints ({', '.join(aimed.constraints)})" if aimed.constraints else "drivers"
+    constraints = f"constraints ({', '.join(aimed.constraints)})" if aimed.constraints else ""
+    by = " and ".join(each for each in (constraints, "drivers" if aimed.drivers else "") if each)
     far = "; for less, mute them, or bake the action" if aimed.mm > LEAST_SHIFT_MM else ""
     return (
         f"Left to {by}, as in the recording: {', '.join(aimed.bones)}, up to {aimed.degrees:.0f}° "

@@ -3,9 +3,11 @@
 from math import pi
 
 import numpy as np
+import pytest
+from hangtime.bridge.controls.aimed import Aimed
 from hangtime.bridge.takes.span import ResultSpan, WrittenTake
 from hangtime.bridge.takes.take_time import TakeTime
-from hangtime.operators.words.take_text import take_lines, take_record
+from hangtime.operators.words.take_text import aimed_line, take_lines, take_record
 from hangtime.solver.data.stance_move import StanceMove
 
 SPAN = ResultSpan(140.0, 333.0, 1.0, 900.0, 30.0, 30.0)
@@ -47,3 +49,18 @@ def test_what_follows_is_told() -> None:
     assert record["carried_turn_deg"] == -90.0
     assert record["later_frames"] == 1
     assert record["bones_held"] == ["pelvis"]
+
+
+@pytest.mark.parametrize(
+    ("constraints", "drivers", "told"),
+    [
+        (("Damped Track", "IK"), False, "Left to constraints (Damped Track, IK), as in"),
+        ((), True, "Left to drivers, as in"),
+        (("Damped Track",), True, "Left to constraints (Damped Track) and drivers, as in"),
+    ],
+)
+def test_all_that_aims_a_head_is_named(
+    constraints: tuple[str, ...], drivers: bool, told: str
+) -> None:
+    aimed = Aimed(("Head",), constraints, drivers, 12.0, 140.0, 1.0)
+    assert aimed_line(aimed).startswith(told)

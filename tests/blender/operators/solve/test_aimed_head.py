@@ -7,8 +7,15 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
+from hangtime.bridge.armature.actions import read_recorded
+from hangtime.bridge.controls.aimed import AIMABLE, aimed_bones, aimed_in
+from hangtime.bridge.controls.driven import acting_on
+from hangtime.solver.body.anatomy import map_anatomy
+from hangtime.solver.body.character import build_character
+from hangtime.solver.data.recording import PoseTrack
+from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.tests.blender.helpers.actions import curves_of, snapshot
-from hangtime.tests.blender.helpers.jump_scene import FIRST, LAST, SceneState
+from hangtime.tests.blender.helpers.jump_scene import FIRST, LAST, SceneState, ask_by_text
 
 pytestmark = [pytest.mark.usefixtures("_enabled"), pytest.mark.slow]
 
@@ -74,6 +81,89 @@ def test_neck_and_head_that_drivers_turn_are_left_to_them(jump: bpy.types.Object
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
     assert bpy.ops.hangtime.adapt() == {"FINISHED"}
     assert "Left to drivers, as in the recording: Head" in jump.hangtime.status
+
+
+def test_a_neck_bone_that_never_bends_may_be_held(jump: bpy.types.Object) -> None:
+    """It is one body with the bone below it, and in no solution by its own name."""
+    hold = jump.pose.bones["Neck1"].constraints.new("LIMIT_ROTATION")
+    hold.owner_space = "LOCAL"
+    hold.use_limit_x = hold.use_limit_y = hold.use_limit_z = True
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    told = "Left to constraints (Limit Rotation), as in the recording: Head, up to"
+    assert told in jump.hangtime.status
+
+
+def test_what_is_asked_of_an_aimed_head_is_refused_by_name(jump: bpy.types.Object) -> None:
+    look_ahead(jump, "Head")
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    ask_by_text(jump, '[[orientation]]\nname = "Look up"\nbone = "Head"\ntilt = -20\n')
+    before = SceneState.of(jump)
+    with pytest.raises(RuntimeError, match=r"“Look up” is about the bone “Head”.*mute these"):
+        bpy.ops.hangtime.adapt()
+    assert SceneState.of(jump) == before
+
+
+def test_what_hangs_on_an_aimed_neck_goes_with_it(jump: bpy.types.Object) -> None:
+    look_ahead(jump, "Neck")
+    recording = read_recorded(jump, FIRST, LAST)
+    segments = map_anatomy(recording.bones)
+    above = [recording.bones[s.bone].name for s in segments if s.part in AIMABLE]
+    assert above[0] == "Neck"
+    assert above[-1] == "Head"
+    assert aimed_bones(jump, recording.bones, segments, recording.frames) == tuple(above)
+
+
+def test_how_far_the_centre_of_mass_is_off_is_told(jump: bpy.types.Object) -> None:
+    """As by turning neck and head as one solid about the neck's joint."""
+    whole, degrees = read_recorded(jump, FIRST, LAST), 20.0
+    bodies, few = build_character(whole).bodies, whole.part(slice(0, 20))
+    turn = axis_rotation(0, np.radians(degrees))
+    above = [body for body in bodies if body.part in AIMABLE]
+    bones = [few.index(body.bone) for body in bodies]
+    rotations = few.rotations[:, bones]
+    aimed = [body in above for body in bodies]
+    rotations[:, aimed] = turn @ rotations[:, aimed]
+    names = tuple(body.bone for body in bodies)
+    track = PoseTrack(few.frames, names, rotations, few.heads[:, bones[0]])
+    joint, moved = few.heads[:, few.index(above[0].bone)], np.zeros((20, 3))
+    for body in above:
+        bone = few.index(body.bone)
+        placed = few.rotations[:, bone] @ (few.bones[bone].rotation.T @ body.com)
+        moved += body.mass * (few.heads[:, bone] + placed - joint) @ (turn - np.eye(3)).T
+    shift = np.linalg.norm(moved, axis=1).max() / sum(body.mass for body in bodies)
+    told = aimed_in(jump, [body.bone for body in above], track, bodies)
+    assert told is not None
+    assert told.degrees == pytest.approx(degrees, abs=0.01)
+    assert told.mm == pytest.approx(1e3 * shift, rel=1e-3)
+    assert told.mm > 1.0
+
+
+def test_all_that_aims_is_named_and_nothing_else(jump: bpy.types.Object) -> None:
+    look_ahead(jump, "Neck")
+    idle = jump.pose.bones["Head"].constraints.new("COPY_ROTATION")
+    idle.target, idle.influence = bpy.data.objects["Goal"], 0.0
+    assert acting_on(jump, ["Neck", "Head"]) == ("Damped Track",)
+    bpy.ops.object.mode_set(mode="EDIT")
+    head = jump.data.edit_bones["Head"]
+    tip = jump.data.edit_bones.new("Look")
+    tip.head, tip.tail, tip.parent = head.tail, head.tail + head.vector, head
+    bpy.ops.object.mode_set(mode="OBJECT")
+    pull = jump.pose.bones["Look"].constraints.new("IK")
+    pull.target, pull.chain_count = bpy.data.objects["Goal"], 2
+    assert acting_on(jump, ["Neck", "Head"]) == ("Damped Track", "IK")
+    assert acting_on(jump, ["Head"]) == ("IK",)
+
+
+def test_drivers_are_named_beside_constraints(jump: bpy.types.Object) -> None:
+    look_ahead(jump, "Neck")
+    mode = jump.pose.bones["Head"].rotation_mode
+    path = "rotation_quaternion" if mode == "QUATERNION" else "rotation_euler"
+    jump.pose.bones["Head"].driver_add(path, 1).driver.expression = "0.05 * sin(frame / 20)"
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    told = "Left to constraints (Damped Track) and drivers, as in the recording: Neck"
+    assert told in jump.hangtime.status
 
 
 def test_a_constraint_on_the_chest_is_refused_as_before(jump: bpy.types.Object) -> None:

@@ -321,7 +321,17 @@ def test_a_frame_rate_that_changed_is_named(analysed: bpy.types.Object) -> None:
     assert bpy.ops.hangtime.fit() == {"FINISHED"}
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
     curves_of(analysed)[0].keyframe_points[150].co[1] += 0.1
-    with pytest.raises(RuntimeError, match="its keys or its repairs changed"):
+    with pytest.raises(
+        RuntimeError, match="its keys, its repairs or the scene's frame rate changed"
+    ):
+        bpy.ops.hangtime.fit()
+
+
+def test_a_frame_rate_that_no_one_kept_may_be_what_changed(analysed: bpy.types.Object) -> None:
+    """In files of earlier versions."""
+    analysed.hangtime.property_unset("analysed_rate")
+    bpy.context.scene.render.fps = 24
+    with pytest.raises(RuntimeError, match="or the scene's frame rate changed since the analysis"):
         bpy.ops.hangtime.fit()
 
 
