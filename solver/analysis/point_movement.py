@@ -59,8 +59,8 @@ def rate(samples: FloatArray) -> FloatArray:
 def acceleration(samples: FloatArray, frame_time: float) -> FloatArray:
     """(N,) second derivative, 1/s², of samples (N,) STEP apart: central; 0 at the clip's ends.
 
-    frame_time: s, of the recording. Less apart than its frames are, samples tell how they were
-    interpolated: they bend at frames.
+    frame_time: s, of the recording. Over much less than it samples tell how they were interpolated,
+    as they bend at frames: so it is taken over about a frame to each side, within half of STEP.
     """
     half = max(HALF, round(frame_time / STEP))
     if len(samples) <= 2 * half:
