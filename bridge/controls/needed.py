@@ -20,6 +20,7 @@ LEVER = 0.3  # m, by which turns of bodies count beside shifts
 REACHED = 0.05  # share of a motion that may be missed by all controls, of what counts as reached
 NEED = 0.03  # share that may be missed more for want of controls
 DEAR = 1e-3  # m for a metre or radian of a control: what takes many of either is not done by it
+CHEAP = 30.0  # likewise, of which more is no better: in its rounding DEAR would be lost
 
 
 @dataclass(frozen=True)
@@ -110,9 +111,11 @@ class _Solved:
     @staticmethod
     def of(look: Effects) -> _Solved:
         """All dofs, for what they can do of what is wanted."""
-        inverse = np.linalg.inv(look.done @ look.done.T + DEAR**2 * np.eye(len(look.done)))
+        size = np.linalg.norm(look.done, axis=1, keepdims=True)
+        done = look.done / np.maximum(size / CHEAP, 1.0)
+        inverse = np.linalg.inv(done @ done.T + DEAR**2 * np.eye(len(done)))
         basis = np.linalg.qr(look.wanted.T)[0].T
-        across = look.done @ basis.T
+        across = done @ basis.T
         missed, parts = np.linalg.eigh(np.eye(len(basis)) - across.T @ inverse @ across)
         amounts = inverse @ across @ parts[:, missed < REACHED**2]
         return _Solved(inverse, amounts, np.zeros((amounts.shape[1],) * 2))
