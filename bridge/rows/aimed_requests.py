@@ -1,18 +1,10 @@
 """Requests about bones that go on being aimed: the result would not have what they ask for."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
-from ...solver.data.faults import RequestFault
+from ...solver.data.faults import AimedBone
 from ...solver.data.recording import Bone
 from ...solver.data.requests import Requests
-
-
-@dataclass
-class AimedBone(RequestFault):
-    """A request names a bone that constraints or drivers aim, or one that hangs on such a bone."""
-
-    bone: str
 
 
 def require_unaimed(requests: Requests, aimed: Sequence[str], bones: Sequence[Bone]) -> None:

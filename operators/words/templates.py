@@ -4,7 +4,6 @@ A template names attributes of its fault in braces; formats with names are those
 messages.py.
 """
 
-from ...bridge.rows.aimed_requests import AimedBone
 from ...solver.data import faults
 from ...solver.data.faults import Fault
 from ...solver.data.row_kinds import RowKind
@@ -81,9 +80,9 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.HeldBones: "Constraints pose the bones {bones:names} otherwise than their keys say "
     "(frame {frame:g}), so a result could not be written; bake the action and mute these "
     "constraints.",
-    AimedBone: "“{request}” is about the bone “{bone}”, which the result leaves to the constraints "
-    "or drivers that aim neck or head; mute these, or bake the action and delete them, then press "
-    "Analyze again; or switch “{request}” off.",
+    faults.AimedBone: "“{request}” is about the bone “{bone}”, which the result leaves to the "
+    "constraints or drivers that aim neck or head; mute these, or bake the action and delete them, "
+    "then press Analyze again; or switch “{request}” off.",
     faults.ZeroLengthBone: "The bone “{bone}” has no length, so it cannot carry mass; give it one "
     "in edit mode, or choose another bone for that part of the body.",
     faults.MissingPart: (

@@ -46,6 +46,7 @@ from .recordings import UnreadStrips as UnreadStrips
 from .recordings import UnseenSupport as UnseenSupport
 from .recordings import UnseenSupports as UnseenSupports
 from .recordings import ZeroLengthBone as ZeroLengthBone
+from .requests import AimedBone as AimedBone
 from .requests import AsksNothing as AsksNothing
 from .requests import BadDimensions as BadDimensions
 from .requests import BadTiming as BadTiming

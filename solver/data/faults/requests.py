@@ -223,6 +223,13 @@ class NoBoneChosen(RequestFault):
 
 
 @dataclass
+class AimedBone(RequestFault):
+    """A request names a bone that constraints or drivers aim, or one that hangs on such a bone."""
+
+    bone: str
+
+
+@dataclass
 class NoPhaseChosen(RequestFault):
     """A request that is to hold in a phase names none."""
 

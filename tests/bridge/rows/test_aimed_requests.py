@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from hangtime.bridge.rows.aimed_requests import AimedBone, require_unaimed
+from hangtime.bridge.rows.aimed_requests import require_unaimed
+from hangtime.solver.data.faults import AimedBone
 from hangtime.solver.data.recording import Bone
 from hangtime.solver.data.requests import (
     ALWAYS,
