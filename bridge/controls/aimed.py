@@ -12,7 +12,7 @@ import numpy as np
 from ...solver.arrays import FloatArray
 from ...solver.body.character import Body
 from ...solver.data.recording import Bone, PoseTrack, Recording
-from ...solver.doctor.local_poses import angles_between
+from ...solver.numerics.rotations import angles_between
 from ...solver.skeleton.parts import Part, Segment
 from ..armature.poses import sample
 from ..armature.read import recording_of

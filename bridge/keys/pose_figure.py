@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
+from ...solver.numerics.rotations import angles_between
 from ..accessors import armature_data
 from ..armature.channels import proper
 from ..armature.incremental import Incremental
@@ -27,13 +28,6 @@ PLANTED = 0.5
 def nearest_frames(frames: FloatArray, wanted: Iterable[float]) -> tuple[float, ...]:
     """Those of frames (T,) that are nearest to wanted ones, in order."""
     return tuple(sorted({float(frames[np.abs(frames - frame).argmin()]) for frame in wanted}))
-
-
-def angles_between(one: FloatArray, other: FloatArray) -> FloatArray:
-    """(T, B) rad between rotations (T, B, 3, 3)."""
-    # The chord of a turn by a is 2 sin(a / 2), and a matrix's norm is that times sqrt(2).
-    chords = np.linalg.norm(one - other, axis=(2, 3)) / np.sqrt(8.0)
-    return np.asarray(2.0 * np.arcsin(np.minimum(chords, 1.0)))
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray, IntArray
-from ...solver.numerics.rotations import rotation_vector
+from ...solver.numerics.rotations import angles_between, rotation_vector
 from ..accessors import armature_data, current_scene
 from ..armature import fcurves
 from ..armature.channels import proper
@@ -25,7 +25,7 @@ from ..recipe.keys import KeyOptions
 from .bone_channels import BoneChannels, KeyedParts, sampled_channels
 from .events import KeyEvents
 from .figure import CarriedParts, Errors
-from .pose_figure import PLANTED, angles_between, nearest_frames
+from .pose_figure import PLANTED, nearest_frames
 
 STEP = 0.001  # of a channel, by which it is tried
 STILL = 1e-6  # of a channel; one that changes by less is off by less, whatever its keys

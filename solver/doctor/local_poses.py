@@ -74,12 +74,6 @@ def fourth_differences(samples: FloatArray) -> FloatArray:
     return out
 
 
-def angles_between(first: FloatArray, second: FloatArray) -> FloatArray:
-    """(...) rad, from one rotation (..., 3, 3) to another."""
-    trace = np.einsum("...ij,...ij->...", first, second)
-    return np.asarray(np.arccos(np.clip(0.5 * (trace - 1.0), -1.0, 1.0)))
-
-
 def runs(mask: BoolArray) -> list[tuple[int, int]]:
     """First and last index of every run of True in (T,)."""
     edges = np.diff(np.concatenate(([0], mask.astype(np.int8), [0])))

@@ -61,6 +61,13 @@ def quaternion(R: FloatArray) -> FloatArray:
     return np.where(quat[..., :1] < 0, -quat, quat)
 
 
+def angles_between(first: FloatArray, second: FloatArray) -> FloatArray:
+    """(...) rad, from one rotation (..., 3, 3) to another."""
+    # The chord of a turn by a is 2 sin(a / 2), and a matrix's norm is that times sqrt(2).
+    chords = np.linalg.norm(first - second, axis=(-2, -1)) / np.sqrt(8.0)
+    return np.asarray(2.0 * np.arcsin(np.minimum(chords, 1.0)))
+
+
 def rotation_matrix(vector: FloatArray) -> FloatArray:
     """(..., 3, 3) rotations of (..., 3) rotation vectors, rad: the exponential (Rodrigues)."""
     vector = np.asarray(vector, dtype=float)

@@ -4,6 +4,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.recording import Recording
+from ..numerics.rotations import angles_between
 
 AT_REST = np.radians(2.0)  # a joint that is nearer to its rest than this is at rest
 SHARE = 0.95  # of the joints that are at rest in a bind pose
@@ -25,12 +26,12 @@ def bind_frames(recording: Recording) -> int:
     bones, parents = map(list, zip(*pairs, strict=True))
     rest = np.stack([bone.rotation for bone in recording.bones])
     local = _between(recording.rotations[:, parents], recording.rotations[:, bones])
-    away = _angles(_between(rest[parents], rest[bones])[None], local)
+    away = angles_between(_between(rest[parents], rest[bones])[None], local)
     resting = (away < AT_REST).mean(axis=1)
     leaning = (resting >= MOST) & (away.max(axis=1) < NEAR)
     for held, least in ((resting >= SHARE, 0.0), (leaning, PART)):
         count = int(np.argmin(held)) if not held.all() else 0
-        if count and (_angles(local[count - 1], local[count]) > JUMP).mean() > least:
+        if count and (angles_between(local[count - 1], local[count]) > JUMP).mean() > least:
             return count
     return 0
 
@@ -38,9 +39,3 @@ def bind_frames(recording: Recording) -> int:
 def _between(first: FloatArray, second: FloatArray) -> FloatArray:
     """Rotations (..., 3, 3) of the second in the first's frame."""
     return np.asarray(np.swapaxes(first, -1, -2) @ second)
-
-
-def _angles(first: FloatArray, second: FloatArray) -> FloatArray:
-    """Angles (...), rad, from one rotation (..., 3, 3) to another."""
-    trace = np.einsum("...ij,...ij->...", first, second)
-    return np.asarray(np.arccos(np.clip(0.5 * (trace - 1.0), -1.0, 1.0)))

@@ -9,8 +9,9 @@ import numpy as np
 from ...arrays import BoolArray, FloatArray
 from ...body.anatomy import Part
 from ...data.recording import Recording
+from ...numerics.rotations import angles_between
 from ..figure import Figure
-from ..local_poses import LocalPoses, angles_between
+from ..local_poses import LocalPoses
 from ..slack import slack
 from .steps import around, moved_steps, turned_steps
 

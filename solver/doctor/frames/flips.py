@@ -7,10 +7,10 @@ import numpy as np
 from ...body.anatomy import Part
 from ...data.problem import Mend
 from ...data.recording import Recording
-from ...numerics.rotations import rotation_matrix, rotation_vector
+from ...numerics.rotations import angles_between, rotation_matrix, rotation_vector
 from ..figure import Figure
 from ..finding import Finding, FindingKind
-from ..local_poses import LocalPoses, angles_between, spans
+from ..local_poses import LocalPoses, spans
 from ..repairs import Repairs
 from ..slack import SPARSE
 

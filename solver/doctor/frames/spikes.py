@@ -8,9 +8,10 @@ from ...arrays import BoolArray, FloatArray
 from ...body.anatomy import Part
 from ...data.problem import Mend
 from ...data.recording import Recording
+from ...numerics.rotations import angles_between
 from ..figure import Figure
 from ..finding import Finding, FindingKind
-from ..local_poses import LocalPoses, angles_between, fourth_differences, spans
+from ..local_poses import LocalPoses, fourth_differences, spans
 from ..repairs import Repairs
 from ..slack import slack
 from .bursts import bursts

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from hangtime.solver.numerics.rotations import (
+    angles_between,
     axis_rotation,
     cross_matrix,
     mean_rotation,
@@ -75,3 +76,12 @@ def test_perpendicular(axis: tuple[float, float, float]) -> None:
     v = unit(np.array(axis))
     assert perpendicular(v) @ v == pytest.approx(0.0, abs=1e-14)
     assert np.linalg.norm(perpendicular(v)) == pytest.approx(1.0)
+
+
+def test_angles_between_are_the_turns_that_lead_there() -> None:
+    random = np.random.default_rng(0)
+    axes = random.normal(size=(50, 3))
+    turns = np.concatenate([random.uniform(0.0, np.pi, 49), [1e-7]])
+    first = rotation_matrix(random.normal(size=(50, 3)))
+    second = rotation_matrix(turns[:, None] * axes / np.linalg.norm(axes, axis=1, keepdims=True))
+    assert angles_between(first, first @ second) == pytest.approx(turns, rel=1e-6, abs=1e-12)
