@@ -245,9 +245,8 @@ def test_of_a_series_all_peaks_join_at_once_and_nothing_beside_them() -> None:
         joined.append(rows.tolist())
         return Problem.columns(problem, rows)
 
-    bounded = problem.step(series=1)
-    bounded._columns = columns
-    corrected(problem, bounded)
+    problem.columns = columns  # type: ignore[method-assign]
+    corrected(problem, problem.step(series=1))
     assert joined[0] == [1, 4, 7]
 
 
