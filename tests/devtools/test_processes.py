@@ -2,9 +2,11 @@
 
 from pathlib import Path
 
+import pytest
 from hangtime.devtools.processes import run_module
 
 
+@pytest.mark.slow
 def test_a_failure_is_told_by_its_last_line(tmp_path: Path) -> None:
     said = run_module("devtools.pairs.solve", [str(tmp_path / "none"), str(tmp_path / "found")])
     assert said is not None

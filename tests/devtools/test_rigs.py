@@ -46,6 +46,7 @@ def by_part(performance: Performance) -> dict[tuple[str, str, int], tuple[int, B
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", layouts(), ids=lambda layout: layout.key)
 def test_the_performer_has_the_same_body_on_every_rig(layout: Layout) -> None:
     """However a rig cuts spine and neck, rolls its bones, rests its arms and ends its hands."""

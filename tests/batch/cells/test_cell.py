@@ -132,6 +132,7 @@ def test_a_fit_that_is_damaged_or_names_a_program_is_none(batch: Path) -> None:
     assert "Thread is not expected" in read(imported)
 
 
+@pytest.mark.slow
 def test_the_bvh_plays_the_adapted_motion_on_the_clips_own_skeleton(batch: Path) -> None:
     cell = cells(batch)[1]
     run_cell(batch, cell.cell)

@@ -72,6 +72,7 @@ def test_data_cannot_end_its_element_and_holds_no_number_that_json_lacks() -> No
     assert json.loads(as_embedded({"clip": "</script>"})) == {"clip": "</script>"}
 
 
+@pytest.mark.slow
 def test_the_contact_sheet_shows_the_pictures_of_the_cells(folder: Path) -> None:
     sheet = read_png(folder / "sheet.png")
     done = next(k for k, state in enumerate(gather(folder).states) if state is State.DONE)
@@ -116,6 +117,7 @@ def test_a_result_that_is_not_whole_counts_as_not_run(tmp_path: Path) -> None:
     assert table(tmp_path)[1]["state"] == "planned"
 
 
+@pytest.mark.slow
 def test_collecting_again_makes_the_same_files_and_leaves_none_aside(tmp_path: Path) -> None:
     make_batch(tmp_path, 12, clips=4)
     collect(tmp_path)

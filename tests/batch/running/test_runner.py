@@ -44,6 +44,7 @@ def test_every_cell_gets_a_result_and_the_same_command_solves_none_again(tmp_pat
     assert not [p.name for p in (folder / CELLS).iterdir() if p.name.startswith(".")]
 
 
+@pytest.mark.slow
 def test_a_cell_whose_worker_dies_is_done_again_and_one_that_kills_them_is_told(
     tmp_path: Path,
 ) -> None:
@@ -66,6 +67,7 @@ def test_a_cell_whose_worker_dies_is_done_again_and_one_that_kills_them_is_told(
     assert "ZeroDivisionError" in (folder / CELLS / by_clip["c.bvh"] / "log.txt").read_text()
 
 
+@pytest.mark.slow
 def test_what_failed_by_no_fault_of_the_input_is_tried_again_by_the_next_run(
     tmp_path: Path,
 ) -> None:

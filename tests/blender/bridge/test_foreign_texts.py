@@ -59,6 +59,7 @@ def test_an_analysis_writes_anew_what_carries_unseen(analysed, capfd) -> None:
     assert "cannot be read" not in capfd.readouterr().out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stored", NONSENSE)
 def test_a_results_own_texts_count_for_nothing_and_are_named(adapted, stored) -> None:
     result = adapted.hangtime.adapted

@@ -205,6 +205,7 @@ def test_fbx_of_unknown_size_falls_as_bodies_do() -> None:
     assert np.ptp(p.com[:, 1]) / p.times[-1] == pytest.approx(3.5, abs=0.1)  # m/s
 
 
+@pytest.mark.slow
 def test_fbx_of_our_own_export_keeps_its_size_and_rate(tmp_path: Path) -> None:
     original = import_clip(mocap_path(CHILD_BVH)).armature
     wanted = {frame: evaluated(original, frame) for frame in (1, 200, 330, 654)}

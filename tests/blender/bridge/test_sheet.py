@@ -83,6 +83,7 @@ def test_both_rows_show_red_pins(picture):
         assert is_red(half).sum() > 10
 
 
+@pytest.mark.slow
 def test_from_above_both_rows_are_shown_once_more_and_tell_what_goes_sideways(tmp_path):
     aside = [replace(row, pins=row.pins + shift) for row, shift in sideways()]
     draw_sheet(aside, tmp_path / "sheet.png", View(heading=(1.0, 0.0), above=True), width=360)
@@ -91,6 +92,7 @@ def test_from_above_both_rows_are_shown_once_more_and_tell_what_goes_sideways(tm
     assert high[2] - high[3] > 0.15  # of its part's height: the landing lies further up
 
 
+@pytest.mark.slow
 def test_from_above_a_floor_that_is_high_up_is_where_one_at_zero_is(tmp_path):
     seen = []
     for up in (0.0, 3.0):

@@ -40,6 +40,7 @@ def jumping(key: str) -> bpy.types.Object:
     return armature
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", list(ways()), ids=lambda way: way.name)
 def test_a_jump_comes_back_from_every_file(way: Way, tmp_path: Path) -> None:
     armature, path = jumping("mixamo"), tmp_path / f"jump{ENDINGS[way.format]}"

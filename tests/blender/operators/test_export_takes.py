@@ -92,6 +92,7 @@ def test_a_usd_of_several_takes_is_refused_in_words(
     assert not path.exists()
 
 
+@pytest.mark.slow
 def test_a_take_that_begins_below_frame_0_is_whole_and_begins_at_0_s(
     accepted: bpy.types.Object, tmp_path: Path
 ) -> None:
@@ -109,6 +110,7 @@ def test_a_take_that_begins_below_frame_0_is_whole_and_begins_at_0_s(
     np.testing.assert_allclose(again.heads[:, columns], shown.heads, atol=1e-3)
 
 
+@pytest.mark.slow
 def test_a_viewport_that_hides_armatures_does_not_empty_the_file(
     accepted: bpy.types.Object, tmp_path: Path
 ) -> None:

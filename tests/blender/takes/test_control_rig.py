@@ -265,6 +265,7 @@ def pulled_legs(jump: bpy.types.Object) -> list[bpy.types.Object]:
     return targets
 
 
+@pytest.mark.slow
 def test_legs_that_are_pulled_from_outside_the_armature_are_refused_before_a_solve(
     jump: bpy.types.Object,
 ) -> None:
