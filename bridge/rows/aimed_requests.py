@@ -1,31 +1,50 @@
 """Requests about bones that go on being aimed: the result would not have what they ask for."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from ...solver.data.faults import AimedBone
 from ...solver.data.recording import Bone
-from ...solver.data.requests import Requests
+from ...solver.data.requests import PoseRequest, Requests
 
 
 def require_unaimed(requests: Requests, aimed: Sequence[str], bones: Sequence[Bone]) -> None:
     """aimed: names of bones that stay aimed. bones: the recording's, parents first.
 
-    Raises AimedBone. Whole-body poses name none.
+    Raises AimedBone. Of poses that reach further the rest is meant, see `apart_from_aimed`.
     """
-    led = set(aimed)
-    for bone in bones:
-        if bone.parent >= 0 and bones[bone.parent].name in led:
-            led.add(bone.name)
-    for request, name in _named(requests):
+    led = _led(aimed, bones)
+    for request, name in _named(requests, led):
         if name in led:
             raise AimedBone(request, name)
 
 
-def _named(requests: Requests) -> Iterator[tuple[str, str]]:
-    """Names of requests about where bones are, and of these bones."""
+def apart_from_aimed(requests: Requests, aimed: Sequence[str], bones: Sequence[Bone]) -> Requests:
+    """The requests, poses without what is aimed; arguments as above."""
+    led = _led(aimed, bones)
+    poses = (replace(pose, apart=led) if _reaches(pose, led) else pose for pose in requests.poses)
+    return replace(requests, poses=tuple(poses))
+
+
+def _led(aimed: Sequence[str], bones: Sequence[Bone]) -> tuple[str, ...]:
+    """What is aimed, and what hangs on it."""
+    led = list(aimed)
+    for bone in bones:
+        if bone.parent >= 0 and bones[bone.parent].name in led and bone.name not in led:
+            led.append(bone.name)
+    return tuple(led)
+
+
+def _reaches(pose: PoseRequest, led: Sequence[str]) -> bool:
+    """Whether the pose is about aimed bones among others."""
+    return bool(led) and (not pose.bones or not set(pose.bones).isdisjoint(led))
+
+
+def _named(requests: Requests, led: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """Names of requests about what bones do, and of these bones."""
     alone = (requests.points, requests.angles, requests.cones, requests.twists)
     for one in (*(each for kind in alone for each in kind), *requests.orientations):
         yield one.name, one.bone
-    for pose in requests.poses:
-        for bone in pose.bones:
-            yield pose.name, bone
+    whole = (p for p in requests.poses if p.weight is None or set(p.bones).issubset(led))
+    for several in (*requests.torques, *whole):
+        yield from ((several.name, bone) for bone in several.bones)

@@ -31,7 +31,7 @@ from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ...bridge.recipe.keys import require_every_frame
 from ...bridge.recipe.result import require_return_after
 from ...bridge.repairs.stored import undoubted
-from ...bridge.rows.aimed_requests import require_unaimed
+from ...bridge.rows.aimed_requests import apart_from_aimed, require_unaimed
 from ...bridge.rows.choices import LoopRoot, WrittenAs
 from ...bridge.takes.options import loop_options, result_options
 from ...bridge.takes.write_result import (
@@ -122,6 +122,7 @@ class Adapting(TaskOperator):
         session().advance(SolveState.SOLVING)
         settings, requests = settings_of(required_armature(context)), asked.problem.requests
         requests = replace(requests, solution=self.solution(settings, requests.solution))
+        requests = apart_from_aimed(requests, asked.aimed, asked.recording.bones)
         first, last = wanted_range(settings)
         frames = None if first is None or last is None else (first, last)
         meant = replace(asked.problem, frames=frames)

@@ -54,7 +54,14 @@ from ...solver.worker.protocol import Adapted
 from ..words.headline import missed_line
 from ..words.report_text import as_text
 from ..words.summary_text import summary
-from ..words.take_text import LEAST_SHIFT_MM, aimed_line, pin_lines, polish_lines, take_lines
+from ..words.take_text import (
+    LEAST_SHIFT_MM,
+    aimed_line,
+    apart_lines,
+    pin_lines,
+    polish_lines,
+    take_lines,
+)
 from ..words.warning_text import warnings_of
 from .keys import mark_contacts, write_keys
 from .scene import note_surfaces, stale_surfaces
@@ -166,8 +173,8 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
 
 
 def _tell_aimed(asked: Asked, armature: bpy.types.Object, track: PoseTrack) -> None:
-    """How far bones that stay aimed are from the solution's track; where that counts, as a
-    warning."""
+    """How far bones that stay aimed are from the solution's track, where that counts as a warning,
+    and which poses leave them out."""
     if not asked.aimed:
         return
     problem, action = asked.problem, present(settings_of(armature).adapted)
@@ -177,7 +184,8 @@ def _tell_aimed(asked: Asked, armature: bpy.types.Object, track: PoseTrack) -> N
     aimed = aimed_in(armature, asked.aimed, track, figure.bodies)
     if aimed is not None:
         far, line = aimed.mm > LEAST_SHIFT_MM, aimed_line(aimed)
-        _warn(armature, action, [line] * far, [line] * (not far))
+        apart = apart_lines(problem.requests.poses, track.bones)
+        _warn(armature, action, [line] * far, [*[line] * (not far), *apart])
 
 
 def _tell_unmet(armature: bpy.types.Object, action: bpy.types.Action, track: PoseTrack) -> None:

@@ -9,6 +9,7 @@ from ...bridge.controls.kept import KeptByControls
 from ...bridge.polish.pins import MovedPin
 from ...bridge.polish.put_on import PlacedPolish
 from ...bridge.takes.span import WrittenTake
+from ...solver.data.requests import PoseRequest
 
 LEAST_SHIFT_MM = 5.0  # of the centre of mass, by which a flight is hardly told from a parabola
 _LEVEL = 0.0005  # m
@@ -105,6 +106,19 @@ def aimed_line(aimed: Aimed) -> str:
         f"from the solution (frame {aimed.frame:g}); the centre of mass is off by "
         f"{aimed.mm:.1f} mm at most{far}"
     )
+
+
+def apart_lines(poses: Sequence[PoseRequest], bodies: Sequence[str]) -> list[str]:
+    """Lines about poses that leave out what is aimed. bodies: names of the figure's bones."""
+    told = []
+    for pose in poses:
+        apart = [b for b in bodies if b in pose.apart and (not pose.bones or b in pose.bones)]
+        if apart:
+            told.append(
+                f"The pose “{pose.name}” is about the rest of the body: {', '.join(apart)} "
+                f"{'stays' if len(apart) == 1 else 'stay'} aimed"
+            )
+    return told
 
 
 def pin_lines(pins: Sequence[MovedPin]) -> list[str]:

@@ -85,7 +85,8 @@ def pose_function(request: PoseRequest, context: EvaluationContext) -> JointAngl
     """
     bodies = [context.jointed(request.name, bone) for bone in request.bones]
     bodies = bodies or list(range(1, len(context.character.bodies)))
-    joints = [context.character.joints[body] for body in bodies]
+    bones = [each.bone for each in context.character.bodies]
+    joints = [context.character.joints[body] for body in bodies if bones[body] not in request.apart]
     which = np.concatenate([np.arange(j.first, j.dofs.stop) for j in joints])
     if request.reference is Reference.REST:
         rest = [joint.axes.angles(np.eye(3)[None])[0] for joint in joints]

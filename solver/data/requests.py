@@ -168,7 +168,8 @@ class PoseRequest:
 
     bones: empty is the whole body. frame: of the recording, whose fit gives the pose; None the
     same frame. weight: None holds exactly; else the solutions only prefer it, by this much.
-    slack: rad by which each angle may miss it where held.
+    slack: rad by which each angle may miss it where held. apart: bones whose joints are left out
+    of it; some may have none.
     """
 
     name: str
@@ -178,6 +179,7 @@ class PoseRequest:
     frame: float | None = None
     weight: float | None = None
     slack: float = 0.0
+    apart: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

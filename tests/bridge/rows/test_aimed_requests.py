@@ -1,8 +1,10 @@
 """What is asked of neck and head where constraints or drivers aim them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from hangtime.bridge.rows.aimed_requests import require_unaimed
+from hangtime.bridge.rows.aimed_requests import apart_from_aimed, require_unaimed
 from hangtime.solver.data.faults import AimedBone
 from hangtime.solver.data.recording import Bone
 from hangtime.solver.data.requests import (
@@ -13,6 +15,7 @@ from hangtime.solver.data.requests import (
     PointRequest,
     PoseRequest,
     Requests,
+    TorqueLimit,
     TwistLimit,
 )
 
@@ -30,9 +33,11 @@ BONES = tuple(
         Requests(cones=(ConeLimit("it", "head", 0.3),)),
         Requests(twists=(TwistLimit("it", "head", 0.0, 1.0),)),
         Requests(orientations=(OrientationRequest("it", "head", ALWAYS),)),
+        Requests(torques=(TorqueLimit("it", ("chest", "head"), 0.0),)),
         Requests(poses=(PoseRequest("it", ALWAYS, ("chest", "head")),)),
+        Requests(poses=(PoseRequest("it", ALWAYS, ("head",), weight=1.0),)),
     ],
-    ids=lambda asked: next(name for name, value in vars(asked).items() if value),
+    ids=["point", "angle", "cone", "twist", "orientation", "torque", "held pose", "preferred pose"],
 )
 def test_it_is_refused_by_its_name(asked: Requests) -> None:
     with pytest.raises(AimedBone) as caught:
@@ -50,5 +55,23 @@ def test_what_hangs_on_an_aimed_bone_is_refused_and_what_carries_it_is_not() -> 
     require_unaimed(point("neck"), ("head",), BONES)
 
 
-def test_a_pose_of_the_whole_body_names_no_bone() -> None:
-    require_unaimed(Requests(poses=(PoseRequest("it", ALWAYS),)), ("head",), BONES)
+@pytest.mark.parametrize(
+    "pose",
+    [
+        PoseRequest("it", ALWAYS),
+        PoseRequest("it", ALWAYS, weight=1.0),
+        PoseRequest("it", ALWAYS, ("chest", "head"), weight=1.0),
+    ],
+    ids=["held", "preferred", "preferred of some"],
+)
+def test_a_pose_of_other_bones_too_is_of_those_alone(pose: PoseRequest) -> None:
+    asked = Requests(poses=(pose,))
+    require_unaimed(asked, ("head",), BONES)
+    (left,) = apart_from_aimed(asked, ("head",), BONES).poses
+    assert left == replace(pose, apart=("head", "hat"))
+    assert apart_from_aimed(asked, (), BONES) == asked
+
+
+def test_a_pose_of_no_aimed_bone_stays() -> None:
+    asked = Requests(poses=(PoseRequest("it", ALWAYS, ("chest",)),))
+    assert apart_from_aimed(asked, ("head",), BONES) == asked

@@ -7,7 +7,8 @@ import pytest
 from hangtime.bridge.controls.aimed import Aimed
 from hangtime.bridge.takes.span import ResultSpan, WrittenTake
 from hangtime.bridge.takes.take_time import TakeTime
-from hangtime.operators.words.take_text import aimed_line, take_lines, take_record
+from hangtime.operators.words.take_text import aimed_line, apart_lines, take_lines, take_record
+from hangtime.solver.data.requests import ALWAYS, PoseRequest
 from hangtime.solver.data.stance_move import StanceMove
 
 SPAN = ResultSpan(140.0, 333.0, 1.0, 900.0, 30.0, 30.0)
@@ -64,3 +65,16 @@ def test_all_that_aims_a_head_is_named(
 ) -> None:
     aimed = Aimed(("Head",), constraints, drivers, 12.0, 140.0, 1.0)
     assert aimed_line(aimed).startswith(told)
+
+
+def test_a_pose_tells_what_it_leaves_out() -> None:
+    poses = (
+        PoseRequest("Tuck", ALWAYS, apart=("Head", "Hat")),
+        PoseRequest("Arm", ALWAYS, ("Arm", "Neck"), weight=1.0, apart=("Neck", "Head")),
+        PoseRequest("Knee", ALWAYS, ("Knee",)),
+    )
+    assert apart_lines(poses, ("Hips", "Arm", "Knee", "Neck", "Head")) == [
+        "The pose “Tuck” is about the rest of the body: Head stays aimed",
+        "The pose “Arm” is about the rest of the body: Neck stays aimed",
+    ]
+    assert apart_lines(poses[:1], ("Hips", "Arm")) == []  # a head that is one with the bone below

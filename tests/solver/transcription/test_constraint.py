@@ -7,6 +7,7 @@ import pytest
 from hangtime.solver.body.kinematics import BodyPoint
 from hangtime.solver.constraints.constraint_builder import build_constraints
 from hangtime.solver.constraints.evaluation_context import touches
+from hangtime.solver.constraints.joint_constraints import pose_function
 from hangtime.solver.constraints.point_constraints import point_axes
 from hangtime.solver.data.faults import (
     BadTiming,
@@ -309,3 +310,11 @@ def test_a_pose_of_a_frame_that_is_not_adapted_is_told_with_those_that_are(frame
         built(Requests(poses=(PoseRequest("pose", LATE, ("right shank",), frame=frame),)))
     assert (told.value.request, told.value.frame) == ("pose", frame)
     assert told.value.first < told.value.last < 9999.0
+
+
+def test_a_pose_leaves_out_what_is_apart() -> None:
+    body = context()
+    knee = body.character.joints[body.body("pose", "right shank")]
+    whole = pose_function(PoseRequest("pose", LATE), body).which
+    left = pose_function(PoseRequest("pose", LATE, apart=("right shank", "tail")), body).which
+    assert set(whole).difference(left) == set(range(knee.first, knee.dofs.stop))

@@ -104,6 +104,19 @@ def test_what_is_asked_of_an_aimed_head_is_refused_by_name(jump: bpy.types.Objec
     assert SceneState.of(jump) == before
 
 
+def test_a_pose_of_the_whole_body_leaves_an_aimed_head_out_and_says_so(
+    jump: bpy.types.Object,
+) -> None:
+    look_ahead(jump, "Head")
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    pose = '[[pose]]\nname = "Tuck"\nphase = "flight 1"\nmoment = "apex"\nslack = 20\n'
+    ask_by_text(jump, pose)
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    told = "The pose “Tuck” is about the rest of the body: Head stays aimed"
+    assert told in jump.hangtime.status.splitlines()
+    assert told in jump.hangtime.adapted.hangtime.report.splitlines()
+
+
 def test_what_hangs_on_an_aimed_neck_goes_with_it(jump: bpy.types.Object) -> None:
     look_ahead(jump, "Neck")
     recording = read_recorded(jump, FIRST, LAST)
