@@ -13,7 +13,7 @@ def require_unaimed(requests: Requests, aimed: Sequence[str], bones: Sequence[Bo
 
     Raises AimedBone. Of poses that reach further the rest is meant, see `apart_from_aimed`.
     """
-    led = _led(aimed, bones)
+    led = _led(requests, aimed, bones)
     for request, name in _named(requests, led):
         if name in led:
             raise AimedBone(request, name)
@@ -21,13 +21,15 @@ def require_unaimed(requests: Requests, aimed: Sequence[str], bones: Sequence[Bo
 
 def apart_from_aimed(requests: Requests, aimed: Sequence[str], bones: Sequence[Bone]) -> Requests:
     """The requests, poses without what is aimed; arguments as above."""
-    led = _led(aimed, bones)
+    led = _led(requests, aimed, bones)
     poses = (replace(pose, apart=led) if _reaches(pose, led) else pose for pose in requests.poses)
     return replace(requests, poses=tuple(poses))
 
 
-def _led(aimed: Sequence[str], bones: Sequence[Bone]) -> tuple[str, ...]:
+def _led(requests: Requests, aimed: Sequence[str], bones: Sequence[Bone]) -> tuple[str, ...]:
     """What is aimed, and what hangs on it."""
+    if requests.body.limbs:  # an armature of its own performs those, and nothing aims
+        return ()
     led = list(aimed)
     for bone in bones:
         if bone.parent >= 0 and bones[bone.parent].name in led and bone.name not in led:

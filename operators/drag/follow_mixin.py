@@ -6,7 +6,7 @@ import bpy
 
 from ...bridge.accessors import present
 from ...bridge.armature.incremental import Incremental
-from ...bridge.constraints.motion_problem import analysis_is_of, problem_of
+from ...bridge.constraints.motion_problem import analysis_is_of
 from ...bridge.properties.settings import settings_of
 from ...bridge.scene.members import present_members
 from ...bridge.worker_client import shared
@@ -14,7 +14,7 @@ from ...solver.data.faults import Fault
 from ...solver.data.status import DragStatus
 from ...solver.worker.protocol import Answer, Failed, Followed, Progress
 from ..operator_types import OperatorResult, PolledOperator
-from ..solve.adapt import ask_for, unanalysed
+from ..solve.adapt import ask_for, followed_problem, unanalysed
 from ..solve.common import required_armature, said
 from ..solve.live import live, redraw_viewports, redraw_views
 from ..solve.session import Asked, session
@@ -162,7 +162,7 @@ class FollowedDrag(PolledOperator):
         """Has the worker follow what is dragged, from the press on, though a click shows no ghost:
         of recording and scene as they were read last. They are read again, in parts, once it has
         told anything, for the first ghost waits for no reading. Raises ChangedMeanwhile where it is
-        another recording.
+        another recording, AimedBone.
         """
         reading, asked = ask_for(context), self._read_before(context)
         if asked is None:
@@ -178,9 +178,8 @@ class FollowedDrag(PolledOperator):
             session().dragged = asked
             if self._moved:  # before the news, after which the worker goes on with it
                 self._moved = False
-                settings, skin = settings_of(self._armature), asked.problem.skin
-                problem = partial(problem_of, settings, asked.recording, asked.scene.objects)
-                stream.want(problem(skin=skin, held=self.held), ahead=not self._press.dragging)
+                problem = followed_problem(settings_of(self._armature), asked, self.held)
+                stream.want(problem, ahead=not self._press.dragging)
             for message in stream.news():
                 self._hear(message)
             if waits and self._press.dragging:

@@ -46,6 +46,7 @@ from ...solver.data.faults import (
     HeldBones,
     RateChanged,
 )
+from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.solver_options import SolverOptions
 from ...solver.data.status import Status
@@ -198,12 +199,23 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     scene = yield from read_surfaces(armature, recording.frames)
     skin = (yield from read_bound(armature, recording.frames)).skin
     problem = problem_of(settings, recording, scene.objects, skin=skin)
-    if not problem.requests.body.limbs:  # an armature of its own performs those, and nothing aims
-        require_unaimed(problem.requests, aimed, recording.bones)
+    require_unaimed(problem.requests, aimed, recording.bones)
     apart = loop_options(settings) is not None or problem.requests.body.limbs
     if options.written_as is WrittenAs.SLOT and not apart:  # those are actions of their own
         require_slot(armature)
     return Asked(armature.name, armature.session_uid, recording, problem, scene, aimed)
+
+
+def followed_problem(settings: HangtimeSettings, asked: Asked, held: str) -> MotionProblem:
+    """What the settings ask by now of what was read for `asked`, as a drag follows it.
+
+    held: name of the contact that the mouse holds. Raises AimedBone, and as `problem_of`.
+    """
+    recording, skin = asked.recording, asked.problem.skin
+    problem = problem_of(settings, recording, asked.scene.objects, skin=skin, held=held)
+    require_unaimed(problem.requests, asked.aimed, recording.bones)
+    requests = apart_from_aimed(problem.requests, asked.aimed, recording.bones)
+    return replace(problem, requests=requests)
 
 
 def _require_analysed(armature: bpy.types.Object, recording: Recording) -> None:

@@ -48,7 +48,7 @@ from ..words.headline import accepted_lines
 from ..words.messages import together
 from ..words.report_text import apex_words
 from ..words.shape_text import shapes_told
-from .adapt import Adapting, ask_for, read_wanted, require_writable
+from .adapt import Adapting, ask_for, followed_problem, read_wanted, require_writable
 from .common import (
     FaultyOperator,
     chosen_armature,
@@ -213,9 +213,8 @@ def _prepare_drag(context: bpy.types.Context) -> Incremental[None]:
     chosen = active_contact(settings)
     with suppress(Fault):
         asked = session().dragged = yield from ask_for(context)
-        skin, held = asked.problem.skin, chosen.name if chosen is not None else ""
-        problem = problem_of(settings, asked.recording, asked.scene.objects, skin=skin, held=held)
-        shared().prepare(asked.recording, problem)
+        held = chosen.name if chosen is not None else ""
+        shared().prepare(asked.recording, followed_problem(settings, asked, held))
 
 
 def _noise(recording: Recording, problem: MotionProblem) -> str:

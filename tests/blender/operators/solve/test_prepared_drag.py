@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import count
 
 import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
+from hangtime.bridge.accessors import present
 from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.constraints.motion_problem import problem_of
@@ -18,6 +20,7 @@ from hangtime.operators.drag.mouse import Press
 from hangtime.operators.solve.analyze import _prepare_drag
 from hangtime.operators.solve.session import session
 from hangtime.solver.data.problem import MotionProblem
+from hangtime.tests.blender.helpers.jump_scene import ask_by_text
 from hangtime.tests.helpers.clips import JUMP_FRAMES
 
 pytestmark = pytest.mark.usefixtures("_enabled")
@@ -142,3 +145,21 @@ def test_another_file_lets_go_of_the_recording() -> None:
     assert session().dragged is not None
     bpy.ops.wm.read_homefile(use_empty=True)
     assert session().dragged is None
+
+
+def test_what_is_asked_of_an_aimed_head_is_refused_as_the_drag_begins(
+    analysed, asked: Asked
+) -> None:
+    complete(_prepare_drag(bpy.context))
+    session().dragged = replace(present(session().dragged), aimed=("Head",))
+    tuck = '[[pose]]\nname = "Tuck"\nphase = "flight 1"\n'
+    ask_by_text(analysed, tuck)
+    next(Drag(analysed)._follow(bpy.context))
+    (pose,) = asked.problems[-1].requests.poses
+    assert pose.apart == ("Head",)
+    ask_by_text(analysed, f'{tuck}[[torque]]\nname = "Limp"\nbones = ["Head"]\nbound = 0\n')
+    drag = Drag(analysed)
+    drag._task, drag._fault = drag._follow(bpy.context), ""
+    drag._look()
+    assert drag._fault.startswith("“Limp” is about the bone “Head”")
+    assert len(asked.problems) == 2, "the worker follows nothing that Adapt would refuse"
