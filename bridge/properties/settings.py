@@ -313,6 +313,8 @@ class HangtimeScene(bpy.types.PropertyGroup):
             poll=_is_armature,
         )
     )
+    own_end: declared(whole(), options=HIDDEN)  # its last frame before results made it longer
+    lengthened_to: declared(whole(), options=HIDDEN)  # by them
 
 
 class HangtimeAskedFor(bpy.types.PropertyGroup):
@@ -361,7 +363,6 @@ class HangtimeAction(bpy.types.PropertyGroup):
     refined: declared(boolean(), options=HIDDEN)  # by Refine, whose weights are of its edit
     performer: declared(target(), options=HIDDEN)  # of other limbs; none: who has the recording
     accepted: declared(boolean(), options=HIDDEN)
-    scene_end: declared(whole(), options=HIDDEN)  # the scene's last frame before it was made longer
     report: declared(text(), options=HIDDEN)  # the report's text
     times: declared(text(), options=HIDDEN)  # its time map: recorded frames, adapted frames
     overlaps: declared(text(), options=HIDDEN)  # what is in what: of the recording, of itself

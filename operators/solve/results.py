@@ -1,15 +1,14 @@
 """Operators on the result: show it or the recording, Accept, Discard, Show Report, Cancel."""
 
-from math import ceil
-
 import bpy
 
-from ...bridge.accessors import current_action, current_scene, present, shown_range, source_of
+from ...bridge.accessors import current_action, current_scene, present, source_of
 from ...bridge.action_slots import lost_slot
 from ...bridge.armature.actions import recorded_action, show
 from ...bridge.armature.strips import remove_strips
 from ...bridge.fake_users import unguard
 from ...bridge.properties.settings import action_settings, settings_of
+from ...bridge.scene.played_end import play_what_is_left
 from ...bridge.takes.takes import bake_shown, results_from
 from ...bridge.takes.write_result import remove_slot
 from ..names import OperatorId
@@ -207,8 +206,7 @@ class DiscardOperator(_OfSettledResult, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature, result = required_armature(context), required_result(context)
         settings, recorded, name = settings_of(armature), source_of(result), result.name
-        performer, last = performer_of(armature), ceil(shown_range(armature, result)[1])
-        scene_end: int = action_settings(result).scene_end
+        performer = performer_of(armature)
         if settings.source == result:
             settings.source = None
         if performer != armature:
@@ -219,32 +217,13 @@ class DiscardOperator(_OfSettledResult, bpy.types.Operator):
             remove_strips(each, result)
         remove_slot(result)
         bpy.data.actions.remove(result)
-        if recorded is not None:
-            _leave_as_before(armature, recorded, last, scene_end)
+        play_what_is_left(current_scene())
+        if recorded is not None and not results_from(recorded):
+            unguard(recorded)
         settings.adapted = None  # the edit at work is no other result's
         settings.status = ""
         self.report({"INFO"}, f"Discarded {name}")
         return {"FINISHED"}
-
-
-def _leave_as_before(
-    armature: bpy.types.Object, recorded: bpy.types.Action, last: int, scene_end: int
-) -> None:
-    """The scene ends as it did before a result, or with the longest that is left of its recording;
-    once none is left, the recording's fake user is what it was.
-
-    last: the last frame of the one that went. scene_end: the scene's before that was made longer
-    for it, 0 where it was not.
-    """
-    left, scene = results_from(recorded), current_scene()
-    if left and scene_end:  # the scene goes back to the first of these once all are gone
-        heir = action_settings(left[-1])
-        heir.scene_end = min(scene_end, heir.scene_end or scene_end)
-    if scene_end and scene.frame_end == last:  # nor has the artist changed it
-        ends = (ceil(shown_range(armature, each)[1]) for each in left)
-        scene.frame_end = min(last, max([scene_end, *ends]))
-    if not left:
-        unguard(recorded)
 
 
 class ShowReportOperator(_OfResult, bpy.types.Operator):

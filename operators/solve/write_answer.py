@@ -6,7 +6,7 @@ from math import isclose
 
 import bpy
 
-from ...bridge.accessors import current_scene, play_to_end, present, shown_range, source_of
+from ...bridge.accessors import current_scene, present, source_of
 from ...bridge.armature.actions import read_recorded_incrementally, recorded_action
 from ...bridge.armature.incremental import Incremental, complete
 from ...bridge.armature.poses import frames_per_second
@@ -30,6 +30,7 @@ from ...bridge.properties.shown_overlaps import store_overlaps
 from ...bridge.properties.shown_times import store_times
 from ...bridge.rows.choices import After, ContactMarkers, WrittenAs
 from ...bridge.rows.phases import roles
+from ...bridge.scene.played_end import play_longer
 from ...bridge.takes.options import loop_options, result_options
 from ...bridge.takes.plan import AdaptedMotion
 from ...bridge.takes.take_time import TakeTime
@@ -107,12 +108,7 @@ def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
         _tell_aimed(asked, armature, answer.track)
     remarks = note_surfaces(armature, asked, answer.report, stale)
     settings = settings_of(armature)
-    ends = (present(each) for each in (recorded_action(armature), settings.adapted))
-    scene = current_scene()
-    scene_end = scene.frame_end
-    play_to_end(scene, *(shown_range(armature, each)[1] for each in ends))
-    if scene.frame_end != scene_end:
-        action_settings(present(settings.adapted)).scene_end = scene_end
+    play_longer(current_scene(), armature, present(settings.adapted))
     refined = asked.problem.requests.solution.method is Method.EXPLICIT
     action_settings(present(settings.adapted)).refined = refined
     settings.status = "\n".join([settings.status, *remarks])

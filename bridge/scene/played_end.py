@@ -1,0 +1,47 @@
+"""The scene's last frame, which goes along with results that are longer than what they were made
+from, and back as they are discarded."""
+
+import bpy
+
+from ..accessors import play_to_end, shown_range, source_of
+from ..action_slots import lost_slot
+from ..properties.settings import action_settings, scene_settings
+
+
+def play_longer(
+    scene: bpy.types.Scene, armature: bpy.types.Object, result: bpy.types.Action
+) -> None:
+    """Where a scene plays to its end what an armature's result was made from, it plays the result
+    to its own."""
+    kept, end = scene_settings(scene), scene.frame_end
+    play_to_end(scene, *_ends(armature, result))
+    if scene.frame_end != end:
+        if end != kept.lengthened_to:  # the artist's own, not an earlier result's
+            kept.own_end = end
+        kept.lengthened_to = scene.frame_end
+
+
+def play_what_is_left(scene: bpy.types.Scene) -> None:
+    """After a result has gone: the scene ends as if only those that are left had ever been made,
+    of any armature; but it stays where the artist has changed it since."""
+    kept = scene_settings(scene)
+    if scene.frame_end != kept.lengthened_to:
+        return
+    scene.frame_end = kept.own_end
+    for before, last in sorted(_ends(*each) for each in _results(scene)):
+        play_to_end(scene, before, last)
+    kept.lengthened_to = scene.frame_end
+
+
+def _ends(armature: bpy.types.Object, result: bpy.types.Action) -> tuple[float, float]:
+    """Last frames of what a result was made from, and of itself."""
+    source = source_of(result)
+    assert source is not None
+    return shown_range(armature, source)[1], shown_range(armature, result)[1]
+
+
+def _results(scene: bpy.types.Scene) -> list[tuple[bpy.types.Object, bpy.types.Action]]:
+    """All results of a scene's armatures."""
+    made = (a for a in bpy.data.actions if source_of(a) is not None and not lost_slot(a))
+    pairs = ((action_settings(action).maker, action) for action in made)
+    return [(o, action) for o, action in pairs if o is not None and scene.objects.get(o.name) == o]

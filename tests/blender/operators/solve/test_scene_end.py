@@ -1,0 +1,106 @@
+"""The scene's last frame, where results of two armatures are longer than their recordings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.scene.played_end import play_longer, play_what_is_left
+from hangtime.bridge.takes.takes import derive
+from hangtime.tests.blender.helpers import rigs
+from hangtime.tests.blender.helpers.actions import curves_of
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+END = 50
+MADE = {"A": 60, "B": 70}  # the last frames of the results
+
+
+@pytest.fixture
+def _figures() -> None:
+    """Two recordings of 50 frames, played to their end."""
+    rigs.reset()
+    bpy.context.scene.frame_end = END
+    for name in MADE:
+        rigs.animate(rigs.make_armature(name=name), frames=(1, END))
+
+
+def make(name: str, last: int) -> None:
+    """A result of an armature, by the recording's name and its own last frame."""
+    armature = bpy.data.objects[name]
+    recorded = armature.animation_data.action
+    result = recorded.copy()
+    result.name, result.use_fake_user = f"{name} {last}", True
+    derive(result, recorded, armature)
+    for curve in curves_of(armature, result):
+        curve.keyframe_points[-1].co.x = last
+        curve.update()
+    play_longer(bpy.context.scene, armature, result)
+
+
+def discard(name: str, last: int) -> None:
+    bpy.data.actions.remove(bpy.data.actions[f"{name} {last}"])
+    play_what_is_left(bpy.context.scene)
+
+
+def same(_path: Path) -> None:
+    """Nothing between."""
+
+
+def loaded(path: Path) -> None:
+    bpy.ops.wm.save_as_mainfile(filepath=str(path / "two.blend"))
+    bpy.ops.wm.read_homefile(use_empty=True)
+    bpy.ops.wm.open_mainfile(filepath=str(path / "two.blend"))
+
+
+def undone(_path: Path) -> None:
+    """A discard of both, undone."""
+    bpy.ops.ed.undo_push(message="before")
+    for name, last in MADE.items():
+        discard(name, last)
+    bpy.ops.ed.undo_push(message="discarded")
+    assert bpy.context.scene.frame_end == END
+    assert bpy.ops.ed.undo() == {"FINISHED"}
+
+
+@pytest.mark.parametrize("meanwhile", [same, loaded, undone])
+@pytest.mark.parametrize("longer_last", [True, False])
+@pytest.mark.parametrize("first", MADE)
+@pytest.mark.usefixtures("_figures")
+def test_it_is_what_is_left_needs_and_at_last_what_it_was(
+    first: str, longer_last: bool, meanwhile: Callable[[Path], None], tmp_path: Path
+) -> None:
+    for name in sorted(MADE, reverse=not longer_last):
+        make(name, MADE[name])
+    assert bpy.context.scene.frame_end == max(MADE.values())
+    meanwhile(tmp_path)
+    (second,) = set(MADE) - {first}
+    discard(first, MADE[first])
+    assert bpy.context.scene.frame_end == MADE[second]
+    discard(second, MADE[second])
+    assert bpy.context.scene.frame_end == END
+
+
+@pytest.mark.usefixtures("_figures")
+def test_it_stays_where_the_artist_has_put_it_since() -> None:
+    for name, last in MADE.items():
+        make(name, last)
+    bpy.context.scene.frame_end = 65
+    for name, last in MADE.items():
+        discard(name, last)
+        assert bpy.context.scene.frame_end == 65
+
+
+@pytest.mark.usefixtures("_figures")
+def test_an_end_that_the_artist_put_between_two_results_is_the_one_to_go_back_to() -> None:
+    make("A", 60)
+    bpy.context.scene.frame_end = 55
+    make("B", 70)
+    discard("B", 70)
+    assert bpy.context.scene.frame_end == 60
+    discard("A", 60)
+    assert bpy.context.scene.frame_end == 55
