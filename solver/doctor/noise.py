@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
+from ..arrays import FloatArray
 from ..data.problem import Mend
 from ..data.recording import Recording
 from ..numerics.rotations import rotation_matrix, rotation_vector
@@ -52,18 +55,54 @@ def smoothed(recording: Recording, figure: Figure) -> Recording:
     local, count = LocalPoses.of(recording), len(recording.frames)
     rotations, heads = local.rotations.copy(), local.heads.copy()
     roots = [b for b, bone in enumerate(recording.bones) if bone.parent < 0]
-    turning = sorted({*_carriers(recording, figure), *roots})
-    width, far = WIDTH * recording.rate, reach(recording.rate)
-    for t in range(count):
-        near = np.arange(max(t - far, 0), min(t + far, count - 1) + 1)
-        u = (near - t) / width
-        root = np.exp(-0.25 * u**2)  # of the weight
-        weights = root * np.linalg.pinv(root[:, None] * u[:, None] ** np.arange(4))[0]
-        heads[t, roots] = np.einsum("k,kbi->bi", weights, local.heads[near][:, roots])
-        here = local.rotations[t, turning]
-        turns = rotation_vector(np.swapaxes(here, -1, -2) @ local.rotations[near][:, turning])
-        rotations[t, turning] = here @ rotation_matrix(np.einsum("k,kbi->bi", weights, turns))
+    weights = _weights(count, reach(recording.rate), WIDTH * recording.rate)
+    heads[:, roots] = _weighed(weights, local.heads[:, roots])
+    for bone in {*_carriers(recording, figure), *roots}:
+        turns = _weighed_turns(weights, local.rotations[:, bone])
+        rotations[:, bone] = local.rotations[:, bone] @ rotation_matrix(turns)
     return LocalPoses(rotations, heads).posed(recording)
+
+
+def _weights(count: int, far: int, width: float) -> FloatArray:
+    """(T, 2 far + 1), of the frames about each of T; 0 of those that are not there.
+
+    far, width: in frames.
+    """
+    weights = np.zeros((count, 2 * far + 1))
+
+    @cache
+    def cubic(before: int, after: int) -> FloatArray:
+        """Its value at the frame, of so many about it."""
+        u = np.arange(-before, after + 1) / width
+        root = np.exp(-0.25 * u**2)  # of the weight
+        return np.asarray(root * np.linalg.pinv(root[:, None] * u[:, None] ** np.arange(4))[0])
+
+    for t in range(count):
+        before, after = min(t, far), min(count - 1 - t, far)
+        weights[t, far - before : far + after + 1] = cubic(before, after)
+    return weights
+
+
+def _weighed(weights: FloatArray, places: FloatArray) -> FloatArray:
+    """(T, B, 3), of places (T, B, 3)."""
+    far, count = weights.shape[1] // 2, len(places)
+    total = weights[:, far, None, None] * places
+    for k in range(1, min(far, count - 1) + 1):
+        total[:-k] += weights[:-k, far + k, None, None] * places[k:]
+        total[k:] += weights[k:, far - k, None, None] * places[:-k]
+    return total
+
+
+def _weighed_turns(weights: FloatArray, rotations: FloatArray) -> FloatArray:
+    """(T, 3) rad, of the turns from each of rotations (T, 3, 3) to those about it; the turn back
+    is minus the turn there."""
+    far, count = weights.shape[1] // 2, len(rotations)
+    total = np.zeros((count, 3))
+    for k in range(1, min(far, count - 1) + 1):
+        turns = rotation_vector(np.swapaxes(rotations[:-k], 1, 2) @ rotations[k:])
+        total[:-k] += weights[:-k, far + k, None] * turns
+        total[k:] -= weights[k:, far - k, None] * turns
+    return total
 
 
 def _carriers(recording: Recording, figure: Figure) -> set[int]:
