@@ -39,9 +39,11 @@ def in_slices(
     frames: FloatArray,
     look: Callable[[FloatArray], T],
     showing: Callable[[], AbstractContextManager[object]] = nullcontext,
+    tell: Callable[[float], object] | None = None,
 ) -> Incremental[list[T]]:
     """What `look` finds at frames (T,), a few a slice. showing: entered for each slice, such as to
-    let an armature perform another action meanwhile."""
+    let an armature perform another action meanwhile. tell: is told the share of frames that are
+    done, 0 to 1."""
     found: list[T] = []
     at, count = 0, FEWEST_FRAMES
     while at < len(frames):
@@ -51,6 +53,8 @@ def in_slices(
         at += count
         spent = perf_counter() - began
         count = max(FEWEST_FRAMES, int(count * min(SLICE_S / spent, 8.0)))
+        if tell is not None:
+            tell(min(at / len(frames), 1.0))
         yield
     return found
 
@@ -59,9 +63,10 @@ def sample_incrementally(
     armature: bpy.types.Object,
     frames: FloatArray,
     showing: Callable[[], AbstractContextManager[object]] = nullcontext,
+    tell: Callable[[float], object] | None = None,
 ) -> Incremental[Poses]:
-    """Sample poses, a few frames a slice. showing: as of `in_slices`."""
-    found = yield from in_slices(frames, partial(sample, armature), showing)
+    """Sample poses, a few frames a slice. showing, tell: as of `in_slices`."""
+    found = yield from in_slices(frames, partial(sample, armature), showing, tell)
     return Poses(
         found[0].bones,
         found[0].parents,

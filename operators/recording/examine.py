@@ -38,6 +38,7 @@ class ExamineOperator(TaskOperator, bpy.types.Operator):
         "feet that slide. Nothing is changed; remedies are offered"
     )
     bl_options = {"UNDO"}
+    reading = 0.5
 
     def task(self, context: bpy.types.Context) -> Task:
         armature = required_armature(context)

@@ -32,9 +32,10 @@ class SolveState(Enum):
 
 
 MOST_TOLD = 1000.0  # times what is allowed
+READING = 0.05  # of the whole, unless told otherwise
+SOLVED = 0.9
 SHARES = {
-    SolveState.READING: 0.0,
-    SolveState.CHECKING: 0.9,
+    SolveState.CHECKING: SOLVED,
     SolveState.WRITING: 0.95,
     SolveState.PREPARING: 0.95,
 }
@@ -44,13 +45,16 @@ SHARES = {
 class Solving:
     """A solve under way. Whoever runs it tells what happens; what cannot happen now raises
     ValueError, for it would be a mistake of ours. of, label: the operator that runs it, and what
-    its button says. analysed: what an analysis found is written, and more is to come."""
+    its button says. analysed: what an analysis found is written, and more is to come. reading: the
+    share of the whole that the recording's reading takes; seen: the share of it that is done."""
 
     of: str = ""
     state: SolveState = SolveState.READING
     progress: Progress | None = None
     label: str = "The work"
     analysed: bool = False
+    reading: float = READING
+    seen: float = 0.0
 
     def advance(self, to: SolveState) -> None:
         """The next part begins."""
@@ -62,6 +66,11 @@ class Solving:
     def again(self) -> None:
         """The analysis is written, and a solve begins after it."""
         self.state, self.progress, self.analysed = SolveState.READING, None, True
+        self.seen = 0.0
+
+    def read(self, share: float) -> None:
+        """So much of the recording has been read, 0 to 1."""
+        self.seen = share
 
     def heard(self, progress: Progress) -> None:
         """The worker told of a step."""
@@ -96,8 +105,11 @@ class Solving:
     @property
     def share(self) -> float:
         """Of the whole, 0 to 1."""
+        if self.state is SolveState.READING:
+            return self.reading * self.seen
         if self.state in (SolveState.SOLVING, SolveState.STOPPING):
-            return 0.05 + 0.85 * (self.progress.share if self.progress is not None else 0.0)
+            solved = self.progress.share if self.progress is not None else 0.0
+            return self.reading + (SOLVED - self.reading) * solved
         return SHARES.get(self.state, 1.0)
 
     def passes(self, event: str) -> bool:

@@ -16,7 +16,7 @@ from ..operator_types import OperatorResult
 from .common import FaultyOperator, ReadyOperator, chosen_armature, failed, said
 from .live import editors, redraw_viewports
 from .session import session
-from .solving import SolveState, Solving
+from .solving import READING, SolveState, Solving
 
 LOOK_EVERY = 0.02  # s
 LOOK_AGAIN = 0.1  # s
@@ -41,6 +41,8 @@ def answered(job: PendingRequest, kind: type[A]) -> Generator[PendingRequest, No
 
 class TaskOperator(ReadyOperator, FaultyOperator):
     """Mixin: `task` does the work; waits for it in scripts, looks now and then in the interface."""
+
+    reading = READING  # share of the work
 
     def task(self, context: bpy.types.Context) -> Task:
         """The work. Raises any Fault, having changed nothing but what `Solving.analysed` tells."""
@@ -67,7 +69,7 @@ class TaskOperator(ReadyOperator, FaultyOperator):
                     shared().close()
 
     def _begun(self) -> Solving:
-        return Solving(type(self).bl_idname, label=type(self).bl_label)
+        return Solving(type(self).bl_idname, label=type(self).bl_label, reading=self.reading)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         if bpy.app.background or context.window is None:

@@ -24,8 +24,12 @@ def test_the_status_bar_says_stage_percent_and_the_worst_constraint() -> None:
 
 
 def test_the_share_never_falls_on_the_way() -> None:
-    under_way = Solving()
+    under_way = Solving(reading=0.5)
     shares = [under_way.share]
+    for share in (0.2, 1.0):
+        under_way.read(share)
+        shares.append(under_way.share)
+    assert shares == [0.0, 0.1, 0.5]
     under_way.advance(SolveState.SOLVING)
     for share in (0.1, 0.6, 1.0):
         under_way.heard(told(share))
