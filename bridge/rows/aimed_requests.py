@@ -47,6 +47,8 @@ def _named(requests: Requests, led: Sequence[str]) -> Iterator[tuple[str, str]]:
     alone = (requests.points, requests.angles, requests.cones, requests.twists)
     for one in (*(each for kind in alone for each in kind), *requests.orientations):
         yield one.name, one.bone
-    whole = (p for p in requests.poses if p.weight is None or set(p.bones).issubset(led))
-    for several in (*requests.torques, *whole):
-        yield from ((several.name, bone) for bone in several.bones)
+    for limit in requests.torques:
+        yield from ((limit.name, bone) for bone in limit.bones)
+    for pose in requests.poses:
+        if pose.weight is None or set(pose.bones).issubset(led):
+            yield from ((pose.name, bone) for bone in pose.bones)
