@@ -49,7 +49,7 @@ def read(path: Path) -> Recording:
     acclaim = path.suffix.lower() == ".amc"
     clip = read_acclaim(find_asf(path), path) if acclaim else read_bvh(path)
     up = guess_up(clip)
-    return to_recording(clip, clip.unit or guess_unit(clip, up), up)
+    return to_recording(clip, clip.unit or guess_unit(clip), up)
 
 
 def fetched(folder: Path) -> Path:

@@ -71,7 +71,7 @@ def read_clip(
     MissingPart, NotBetweenFrames, NothingLeft, OddScale and OutsideKeys."""
     clip = read_file(path, rate)
     axis = up or guess_up(clip)
-    metres = unit or clip.unit or guess_unit(clip, axis)
+    metres = unit or clip.unit or guess_unit(clip)
     guessed = unit is None and clip.unit is None
     origin = Origin(path.name, metres, guessed, axis, up is None, miscount=clip.miscount)
     recording = _by_depth(to_recording(replace(clip, name=path.stem), metres, axis))

@@ -95,7 +95,7 @@ def _placed(
 ) -> ImportedClip:
     """Settle unit and up axis of a clip; `make` gets it, its scale to Blender units, the axis."""
     axis = up or guess_up(clip)
-    metres = unit or clip.unit or guess_unit(clip, axis)
+    metres = unit or clip.unit or guess_unit(clip)
     armature = make(clip, metres / metres_per_unit(current_scene()), axis)
     _set_scene(clip)
     guessed = unit is None and clip.unit is None

@@ -2,12 +2,13 @@
 
 import numpy as np
 
-from ...solver.arrays import FloatArray
+from ...solver.arrays import FloatArray, IntArray
 from .motion_clip import MotionClip, UpAxis, forward_kinematics, rest_axes
 
 ACCLAIM_UNIT = 0.0254 / 0.45  # an inch over the scale that the CMU recordings carry
 LIKELY_UNITS = (1.0, 0.1, ACCLAIM_UNIT, 0.0254, 0.01, 0.001)  # m
 LIKELY_HEIGHT = 1.7  # m
+LONGEST_WAY = 1.35  # of a person's height, along the bones from fingertips to toes
 SAMPLES = 32
 
 
@@ -24,10 +25,10 @@ def guess_up(clip: MotionClip) -> UpAxis:
     return "Z" if stature[2] > stature[1] else "Y"
 
 
-def guess_unit(clip: MotionClip, up: UpAxis | None = None) -> float:
-    """Metres per unit: the likely unit that makes the figure nearest in ratio to 1.7 m tall."""
-    vertical = 2 if (up or guess_up(clip)) == "Z" else 1
-    return likely_unit(float(np.median(np.ptp(_sampled_points(clip)[..., vertical], axis=1))))
+def guess_unit(clip: MotionClip) -> float:
+    """Metres per unit: the likely unit that makes the figure nearest in ratio to 1.7 m tall, by the
+    lengths of its bones, for who lies or crawls is no smaller."""
+    return likely_unit(_longest_way(clip) / LONGEST_WAY)
 
 
 def likely_unit(height: float) -> float:
@@ -37,10 +38,27 @@ def likely_unit(height: float) -> float:
     return min(LIKELY_UNITS, key=lambda unit: abs(np.log(unit * height / LIKELY_HEIGHT)))
 
 
+def _longest_way(clip: MotionClip) -> float:
+    """Units from one tip of the skeleton to another, along its bones, at the longest."""
+    lengths = np.linalg.norm(np.median(clip.positions[_sampled(clip)], axis=0), axis=1)
+    deepest, longest = np.linalg.norm(rest_axes(clip), axis=1), 0.0
+    for j, joint in reversed([*enumerate(clip.joints)]):
+        longest = max(longest, float(deepest[j]))
+        if joint.parent >= 0:
+            way = lengths[j] + deepest[j]
+            longest = max(longest, float(deepest[joint.parent] + way))
+            deepest[joint.parent] = max(deepest[joint.parent], way)
+    return longest
+
+
 def _sampled_points(clip: MotionClip) -> FloatArray:
     """(S, 2J, 3) heads, then tails, at instants spread over the clip."""
-    total = len(clip.positions)
-    frames = np.unique(np.linspace(0, total - 1, min(SAMPLES, total)).astype(int))
-    heads, rotations = forward_kinematics(clip, frames)
+    heads, rotations = forward_kinematics(clip, _sampled(clip))
     tails = heads + np.einsum("tjab,jb->tja", rotations, rest_axes(clip))
     return np.concatenate([heads, tails], axis=1)
+
+
+def _sampled(clip: MotionClip) -> IntArray:
+    """Frames spread over the clip."""
+    total = len(clip.positions)
+    return np.asarray(np.unique(np.linspace(0, total - 1, min(SAMPLES, total)).astype(int)))

@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from ...solver.arrays import FloatArray
+from ...solver.arrays import FloatArray, IntArray
 from ...solver.data.recording import Bone, Recording
 from ...solver.numerics.rotations import axis_rotation
 
@@ -74,7 +74,7 @@ def euler_matrices(axes: Sequence[int], angles: FloatArray) -> FloatArray:
 
 
 def forward_kinematics(
-    clip: MotionClip, frames: slice | FloatArray = slice(None)
+    clip: MotionClip, frames: slice | IntArray = slice(None)
 ) -> tuple[FloatArray, FloatArray]:
     """Heads (T, J, 3) and rotations (T, J, 3, 3) in the file's world, at the frames chosen."""
     heads, rotations = clip.positions[frames].copy(), clip.rotations[frames].copy()

@@ -31,7 +31,7 @@ def load_recording(name: str) -> Recording:
     """A BVH or AMC file in metres, Z up."""
     clip = load_clip(name)
     up = guess_up(clip)
-    return to_recording(clip, clip.unit or guess_unit(clip, up), up)
+    return to_recording(clip, clip.unit or guess_unit(clip), up)
 
 
 def without_frames(clip: Path, after: int, count: int, folder: Path) -> Path:

@@ -115,7 +115,7 @@ def _text(path: Path) -> str:
 
 def _recording(clip: MotionClip) -> Recording:
     up = guess_up(clip)
-    return to_recording(clip, clip.unit or guess_unit(clip, up), up)
+    return to_recording(clip, clip.unit or guess_unit(clip), up)
 
 
 def _check(case: HostileCase, recording: Recording) -> None:

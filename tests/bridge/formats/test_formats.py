@@ -12,6 +12,7 @@ from hangtime.bridge.formats.motion_clip import forward_kinematics, rest_axes, t
 from hangtime.bridge.formats.obj import UnreadableMesh, read_obj
 from hangtime.devtools.recordings import HOPS
 from hangtime.solver.data.faults import ClipNotOpened, NonFiniteKey, UnreadableClip
+from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.tests.helpers.clips import load_clip, load_recording
 
 HOP_BVH = "hop_01_01.bvh"
@@ -374,6 +375,14 @@ def test_unit_up_and_rate_are_guessed_right(
     assert guess_up(clip) == up
     assert guess_unit(clip) == pytest.approx(unit)
     assert 1.0 / clip.frame_time == pytest.approx(rate)
+
+
+def test_who_lies_is_no_smaller() -> None:
+    """A clip of a fall, or of crawling, has the same unit as one of the same figure that stands."""
+    clip = load_clip("rokoko_jesse_dance.bvh")
+    rotations = clip.rotations.copy()
+    rotations[:, 0] = axis_rotation(0, np.full(len(rotations), np.pi / 2)) @ rotations[:, 0]
+    assert guess_unit(replace(clip, rotations=rotations)) == pytest.approx(0.01)
 
 
 def test_up_is_guessed_without_telling_names() -> None:
