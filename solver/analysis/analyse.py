@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..arrays import BoolArray
 from ..body.character import Character, build_character
 from ..data.contacts import Contact, ContactSchedule, Interval, numbered, snap
 from ..data.faults import (
@@ -27,12 +28,20 @@ from ..data.faults import (
 )
 from ..data.problem import MotionProblem, Unseen
 from ..data.recording import MIN_CLIP_DURATION, Recording, Skin
+from ..data.scene import SupportBox
 from ..scene.belt import belt_speed
 from ..scene.fall_rate import fitting_rate
 from ..scene.support import boxes_beneath
 from .contact_detection import unseen_support
 from .grounding import disjoint, foot_sized, grounded, parted
-from .performance import Performance, contact_points, find_contacts, perform, snap_tolerance
+from .performance import (
+    Performance,
+    contact_points,
+    find_contacts,
+    leans,
+    perform,
+    snap_tolerance,
+)
 from .take import take_of
 
 ROUNDING = 1e-6  # of a frame's time
@@ -114,8 +123,10 @@ def _told(
     recording = performance.recording
     agreed = agreed_rate(performance, schedule)
     for gap in schedule.unseen:
-        rate = agreed if _fitting_rate(performance, gap) == agreed else None
-        boxes = boxes_beneath(performance.times, points, gap, floor_m) if rate is None else ()
+        rate = agreed if _fitting_rate(performance, gap, floor_m) == agreed else None
+        boxes: tuple[SupportBox, ...] = ()
+        if rate is None and not _leans(performance, gap, floor_m):
+            boxes = boxes_beneath(performance.times, points, gap, floor_m)
         first, last = _frame(recording, gap.start), _frame(recording, gap.end)
         yield UnseenSupport(first, last, boxes, rate, recording.rate)
 
@@ -125,16 +136,27 @@ def agreed_rate(performance: Performance, schedule: ContactSchedule) -> int | No
     there is none: a clock that is wrong is so in every flight."""
     seconds: defaultdict[int | None, float] = defaultdict(float)
     for gap in schedule.unseen:
-        seconds[_fitting_rate(performance, gap)] += gap.end - gap.start
+        seconds[_fitting_rate(performance, gap, schedule.floor_m)] += gap.end - gap.start
     aloft = sum(seconds.values()) + sum(flight.end - flight.start for flight in schedule.flights)
     return next((rate for rate, spent in seconds.items() if spent > MOST * aloft), None)
 
 
-def _fitting_rate(performance: Performance, gap: Interval) -> int | None:
+def _fitting_rate(performance: Performance, gap: Interval, floor_m: float) -> int | None:
     """The frame rate at which the body falls in a gap; None where that does not explain it."""
-    inside = (performance.times >= gap.start) & (performance.times <= gap.end)
+    if _leans(performance, gap, floor_m):
+        return None
+    inside = _inside(performance, gap)
     heights = performance.com[inside, 2]
     return fitting_rate(performance.times[inside], heights, performance.recording.rate)
+
+
+def _leans(performance: Performance, gap: Interval, floor_m: float) -> bool:
+    """Whether another part of the body than a foot is on the floor in a gap, and may carry it."""
+    return bool(leans(performance, floor_m)[_inside(performance, gap)].any())
+
+
+def _inside(performance: Performance, gap: Interval) -> BoolArray:
+    return (performance.times >= gap.start) & (performance.times <= gap.end)
 
 
 def build_figure(recording: Recording, problem: MotionProblem) -> tuple[Recording, Character]:

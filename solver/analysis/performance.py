@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..body.anatomy import Part, Side
 from ..body.character import Character, body_rotations
 from ..body.kinematics import BodyPoint
@@ -21,6 +21,7 @@ from .soles import FootTracks, floor_height, foot_points
 
 SNAP_FRAMES = 1.5
 MIN_SNAP_TOLERANCE = 0.012  # s; instants nearer than this share a knot
+LEANING = 0.07  # of the height, above the floor; wrists and knees on it are at 0.03 to 0.05
 
 
 @dataclass(frozen=True)
@@ -119,6 +120,20 @@ def contact_points(performance: Performance) -> tuple[dict[str, ContactPoint], f
         if hand is not None:
             points[f"{side.value.capitalize()} hand"] = _palm(performance, hand)
     return points, floor_m
+
+
+def leans(performance: Performance, floor_m: float) -> BoolArray:
+    """(T,) whether another part of the body than a foot, such as a hand or a knee, is as near to
+    the floor as where the body leans or lies on it, whatever contacts tell."""
+    bodies = performance.character.bodies
+    joints = [i for i, body in enumerate(bodies) if body.part not in (Part.FOOT, Part.TOE)]
+    ends = [i for i in joints if bodies[i].part in (Part.HEAD, Part.FOREARM, Part.HAND)]
+    tips = np.stack([performance.rotations[:, i] @ bodies[i].tip for i in ends], axis=1)
+    low = np.minimum(
+        performance.centres[:, joints, 2].min(axis=1),
+        (performance.centres[:, ends] + tips)[..., 2].min(axis=1),
+    )
+    return np.asarray(low - floor_m < LEANING * performance.character.height)
 
 
 def _palm(performance: Performance, hand: int) -> ContactPoint:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..analysis.performance import Performance, contact_points
+from ..analysis.performance import Performance, contact_points, leans
 from ..arrays import FloatArray
 from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import PointKind
@@ -79,7 +79,7 @@ def falls_of(performance: Performance, trusted: Trusted = ALL) -> Falls | None:
     points, floor = contact_points(performance)
     feet = [point.track[:, 2] for point in points.values() if point.kind is not PointKind.HAND]
     height = performance.character.height
-    up = np.min(feet, axis=0) - floor > CLEAR * height
+    up = (np.min(feet, axis=0) - floor > CLEAR * height) & ~leans(performance, floor)
     times, com, frames = performance.times, performance.com[:, 2], performance.recording.frames
     found, spans = [], []
     for first, last in runs(up):

@@ -9,8 +9,9 @@ from hangtime.devtools.doctor.damages import (
     sized,
     slowed,
 )
-from hangtime.solver.analysis.performance import perform
-from hangtime.solver.body.anatomy import Part
+from hangtime.solver.analysis.analyse import agreed_rate
+from hangtime.solver.analysis.performance import find_contacts, perform
+from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import build_character
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.falls import find_scale
@@ -31,6 +32,18 @@ def test_a_clock_that_is_wrong_is_told_by_the_fall(factor: float) -> None:
     assert found.remedy.time_scale * factor == pytest.approx(1.0, abs=1e-9)  # 120 Hz is usual
     assert found.alternative is not None
     assert found.alternative.scale == pytest.approx(factor**2, rel=0.05)
+
+
+def test_a_body_that_leans_on_a_hand_does_not_fall() -> None:
+    """As in a cartwheel: it sinks as if a clock that is wrong had slowed its fall."""
+    slow = slowed(2.0).of(jump()).recording
+    carried = perform(slow, character())
+    schedule = find_contacts(carried)
+    assert agreed_rate(carried, schedule) == pytest.approx(120.0)
+    hand = character().body(Part.HAND, Side.LEFT)
+    carried.centres[:, hand, 2] = schedule.floor_m + 0.04
+    assert agreed_rate(carried, schedule) is None
+    assert find_scale(carried) is None
 
 
 @pytest.mark.parametrize("factor", [1.6, 0.01, 2.54])
