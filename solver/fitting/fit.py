@@ -328,7 +328,7 @@ def _off(motion: Motion, performance: Performance) -> float:
 
 
 def reached_places(motion: Motion) -> FloatArray:
-    """(n_contacts, 3) m, mean position of each pinned point.
+    """(n_contacts, 3) m, mean place of each pinned point, without what its sole gives.
 
     Places read off a recording contradict each other by millimetres where heel and toe of one foot
     are both down; where the steps brought them they agree better.
@@ -337,9 +337,7 @@ def reached_places(motion: Motion) -> FloatArray:
     for i, contact in enumerate(motion.transcription.contacts):
         instants = pinned_instants(contact, 120.0)
         reached = motion.contact_points(instants)[:, contact.point]
-        if contact.ride is not None:
-            reached = contact.ride.back(instants, reached)
-        places[i] = reached.mean(axis=0)
+        places[i] = contact.holds(instants).back(reached).mean(axis=0)
     return settled_places(motion.transcription, places)
 
 

@@ -26,6 +26,10 @@ class Poses:
         points = np.broadcast_to(point, self.shift.shape)
         return np.asarray(np.einsum("tij,tj->ti", self.turn, points) + self.shift)
 
+    def back(self, points: FloatArray) -> FloatArray:
+        """(T, 3) what the poses put at points (T, 3), one by one, m."""
+        return np.asarray(np.einsum("tji,tj->ti", self.turn, points - self.shift))
+
     def after(self, first: Poses) -> Poses:
         """These poses of what `first` has moved; of T, or one for all."""
         return Poses(self.turn @ first.turn, self.of(first.shift))

@@ -45,8 +45,7 @@ class Ride:
 
     def back(self, times: FloatArray, points: FloatArray) -> FloatArray:
         """Where points (T, 3) m at instants (T,) s were at `since`, on the ground."""
-        at = self.poses(times)
-        return np.asarray(np.einsum("tji,tj->ti", at.turn, points - at.shift))
+        return self.poses(times).back(points)
 
     def rates(self, times: FloatArray) -> Poses:
         """Rates of change of `poses`."""

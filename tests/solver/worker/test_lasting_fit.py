@@ -153,6 +153,19 @@ def test_a_dance_without_a_flight_is_fitted() -> None:
     assert fit_quality(found).joint_centres_rms_cm < 2.5
 
 
+def test_a_figure_without_toes_keeps_its_contacts() -> None:
+    """Heel and ball on one bone cannot come nearer to each other as one of them rises."""
+    run = load_recording("BMC_run.bvh")
+    keep = [i for i, bone in enumerate(run.bones) if "Toe" not in bone.name]
+    bones = tuple(
+        replace(run.bones[i], parent=keep.index(run.bones[i].parent) if i else -1) for i in keep
+    )
+    toeless = replace(run, bones=bones, heads=run.heads[:, keep], rotations=run.rotations[:, keep])
+    fitted = fit_subject(measure(toeless, MotionProblem(frames=(1.0, 60.0))), StageClock())
+    assert fitted.solved
+    assert not fitted.let_go
+
+
 @pytest.mark.slow
 def test_a_contact_that_contradicts_the_others_is_let_go_and_told() -> None:
     """One point of a standing foot is said to be further off than the foot can turn."""
