@@ -11,9 +11,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..analysis.performance import Performance
+from ..analysis.performance import Performance, leans
 from ..data.contacts import ContactSchedule, Interval, gaps
 from ..data.row_kinds import RowKind
+from ..doctor.local_poses import runs
 from ..fitting.fit import Fit, LetGo, fit
 from ..optimisation.sqp import Progress
 from ..transcription.ride import Ride
@@ -21,7 +22,7 @@ from ..transcription.rows import Rows
 
 MAX_ROUNDS = 6  # then everything is let go
 WORST_SHARE = 0.5  # of the worst contact's miss: who misses more is let go with it
-FAR = 0.03  # m, rms over joint centres; further off a fit's flights are doubted
+FAR = 0.03  # m, rms over joint centres; further off it is doubted what carried the body
 OFF_PARABOLA = 0.03  # m, by which the recorded centre of mass leaves the fit's parabola
 MUCH_NEARER = 0.8  # times as far: what something unseen must gain
 CONTRADICTORY = 1e-3  # m; contacts that miss by less follow what else does not hold
@@ -63,9 +64,9 @@ def lasting_fit(
             break  # nothing is left to let go of
         schedule = easier
         let_go += released
-    never = () if periodic or not found.solved else _never_flown(found)
-    if never:
-        told = _unseen_too(schedule, never)
+    doubted = () if periodic or not found.solved else _doubted(found)
+    if doubted:
+        told = _unseen_too(schedule, doubted)
         again = fit(performance, told, rides=rides(told), progress=progress)
         if again.solved and _off(again) < MUCH_NEARER * _off(found):
             found = again
@@ -78,11 +79,14 @@ def _off(found: Fit) -> float:
     return float(np.sqrt((apart**2).sum(axis=2).mean()))
 
 
+def _doubted(found: Fit) -> tuple[Interval, ...]:
+    """Where a fit far from its recording may lack what carried the body."""
+    return () if _off(found) < FAR else (*_never_flown(found), *_leaning(found))
+
+
 def _never_flown(found: Fit) -> tuple[Interval, ...]:
-    """The flights of a fit far from its recording in which the centre of mass was recorded away
-    from any parabola near by: those that never were."""
-    if _off(found) < FAR:
-        return ()
+    """The flights of a fit in which the centre of mass was recorded away from any parabola near by:
+    those that never were."""
     performance = found.performance
     away = np.linalg.norm(found.motion.com(performance.times) - performance.com, axis=1)
     times, flights = performance.times, found.schedule.flights
@@ -91,6 +95,12 @@ def _never_flown(found: Fit) -> tuple[Interval, ...]:
         for f in flights
         if away[(times >= f.start) & (times <= f.end)].max(initial=0.0) > OFF_PARABOLA
     )
+
+
+def _leaning(found: Fit) -> tuple[Interval, ...]:
+    """Where hands, knees or the trunk are on the floor: what they carry no contact tells."""
+    times, leaning = found.performance.times, leans(found.performance, found.schedule.floor_m)
+    return tuple(Interval(float(times[a]), float(times[b])) for a, b in runs(leaning) if b > a)
 
 
 def _accepted(failed: Fit, schedule: ContactSchedule, good_enough: float) -> ContactSchedule:

@@ -17,6 +17,7 @@ from hangtime.solver.data.reports.report import Report
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.traces import UNSEEN_SUPPORT
 from hangtime.solver.fitting.fit import Fit
+from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.solver.results.npz_export import save
 from hangtime.solver.results.report import fit_quality
 from hangtime.solver.results.unseen_support import fit_needs
@@ -151,6 +152,20 @@ def test_a_dance_without_a_flight_is_fitted() -> None:
     assert found.solved
     assert found.schedule.flights == ()
     assert fit_quality(found).joint_centres_rms_cm < 2.5
+
+
+def test_who_lies_on_the_floor_stays_there() -> None:
+    """The toes alone touch, which hold nobody up who leans over by 80 degrees."""
+    stands = load_recording(JUMP).window(1.0, 60.0)
+    toes = [i for i, bone in enumerate(stands.bones) if "Toe" in bone.name]
+    turn = axis_rotation(0, np.radians([80.0]))[0]
+    hinge = stands.heads[0, toes].mean(axis=0) * [1.0, 1.0, 0.0]
+    heads = (stands.heads - hinge) @ turn.T + hinge
+    lies = replace(stands, heads=heads, rotations=turn @ stands.rotations)
+    fitted = fit_subject(measure(lies, MotionProblem()), StageClock())
+    assert fitted.solved
+    assert fitted.schedule.contacts
+    assert fit_quality(fitted).joint_centres_rms_cm < 1.0  # by its toes alone 9
 
 
 def test_a_figure_without_toes_keeps_its_contacts() -> None:
