@@ -213,6 +213,9 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "{most:g}.",
     faults.UnknownPhaseIn: "“{request}” is about the phase “{phase}”, which the clip does not "
     "have; it has {known:names}.",
+    faults.JoinedPhase: "“{request}” is about the phase “{phase}”, which is joined with others, as "
+    "something unseen carries the body there; choose one that still is by itself ({kept:names}), "
+    "or frames in which what carries the body is recorded.",
     faults.StillBone: "“{request}” names the bone “{bone}”, which is none of those that physics "
     "moves; those most like it are {likeliest:names}.",
     faults.BadTiming: "“{request}” would last {seconds:.3f} s; change its frames, phase or "
@@ -226,8 +229,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.NeedsTorques: "“{request}” is about torques, but the reduced dynamics have none; choose "
     '"automatic" or "standard" dynamics.',
     faults.NothingTouches: (
-        "“{request}” is about nothing, which does not touch then; name contacts, points or bones "
-        "that the analysis lists.",
+        "“{request}” is about all that touches, but nothing touches then; choose a phase or frames "
+        "in which the analysis lists a contact.",
         "“{request}” is about {touching:names}, which does not touch then; name contacts, points "
         "or bones that the analysis lists.",
     ),

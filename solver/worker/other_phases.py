@@ -9,8 +9,9 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from ..analysis.pinned_places import chosen_contacts, phase_of
+from ..constraints.evaluation_context import touches
 from ..data.contacts import Contact, ContactSchedule, Phase
-from ..data.faults import PinLetGo, UnknownPhaseIn
+from ..data.faults import JoinedPhase, PinLetGo, UnknownPhaseIn
 from ..data.problem import MotionProblem, Pin
 from ..data.recording import Recording
 from ..data.requests import Lift, PhaseTiming, Requests, When
@@ -21,7 +22,7 @@ def on_phases_of(
 ) -> MotionProblem:
     """The problem in the phases and contacts of a fit; itself where these are those found.
 
-    Raises PinLetGo, UnknownPhaseIn, and as `chosen_contacts` does.
+    Raises PinLetGo, UnknownPhaseIn, JoinedPhase, and as `chosen_contacts` does.
     """
     same = [c.name for c in found.contacts] == [c.name for c in fitted.contacts]
     if same and found.phases == fitted.phases:
@@ -79,8 +80,10 @@ class _Change:
         return replace(asked, **moved)
 
     def _at(self, request: Any) -> Any:
-        if isinstance(request, Lift | PhaseTiming):
-            return self._of_phase(request)
+        if isinstance(request, Lift):
+            return self._lift(request)
+        if isinstance(request, PhaseTiming):
+            return replace(request, phase=self._same_phase(request))
         when = getattr(request, "when", None)
         return request if when is None else replace(request, when=self._when(when))
 
@@ -97,12 +100,28 @@ class _Change:
             start, end = max(start, when.frames[0]), min(end, when.frames[1])
         return replace(when, phase=None, frames=(start, end))
 
-    def _of_phase(self, request: Lift | PhaseTiming) -> Lift | PhaseTiming:
+    def _lift(self, lift: Lift) -> Lift:
+        """The lift of the same contacts, also where their phase is joined with others."""
+        phase = _named(lift.phase, self.found.phases)
+        asked = () if phase is None else self.found.of_phase(phase)
+        names = [c.name for c in asked if touches(lift.touching, c)]
+        left = [c for c in self.fitted.contacts if c.name in names]
+        if phase is None or self._renamed(phase) is not None or not left:
+            return replace(lift, phase=self._same_phase(lift))
+        touching = tuple(c.name for c in left)
+        return replace(lift, phase=self.fitted.stance(left[0]).name, touching=touching)
+
+    def _same_phase(self, request: Lift | PhaseTiming) -> str:
+        """The name in the fit of a request's phase. Raises UnknownPhaseIn, JoinedPhase."""
         phase = _named(request.phase, self.found.phases)
-        name = None if phase is None else self._renamed(phase)
+        if phase is None:
+            raise UnknownPhaseIn(
+                request.name, request.phase, tuple(p.name for p in self.found.phases)
+            )
+        name = self._renamed(phase)
         if name is None:
-            raise UnknownPhaseIn(request.name, request.phase, self._kept)
-        return replace(request, phase=name)
+            raise JoinedPhase(request.name, request.phase, self._kept)
+        return name
 
     @property
     def _kept(self) -> tuple[str, ...]:

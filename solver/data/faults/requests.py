@@ -103,6 +103,15 @@ class UnknownPhaseIn(RequestFault):
 
 
 @dataclass
+class JoinedPhase(RequestFault):
+    """A request is about a whole phase that the fit joined with others, as something unseen carries
+    the body there; kept: the phases that are still their own."""
+
+    phase: str
+    kept: tuple[str, ...]
+
+
+@dataclass
 class StillBone(RequestFault):
     """A request names a bone that the figure's bodies do not move."""
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hangtime.operators.words.messages import sentence
 from hangtime.solver.data.contacts import ContactSchedule, Interval
-from hangtime.solver.data.faults import PinLetGo, UnknownPhaseIn
+from hangtime.solver.data.faults import JoinedPhase, PinLetGo, UnknownPhaseIn
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.requests import AngleLimit, Lift, PhaseTiming, Requests, When
@@ -92,8 +92,21 @@ def test_requests_stay_with_their_instants() -> None:
     assert told.lifts[0].phase == "ground 2"
 
 
+def test_what_is_lifted_stays_the_same_where_its_phase_is_joined() -> None:
+    lifts = (Lift("All", "ground 2"), Lift("Bone", "ground 2", (found().contacts[1].bone,)))
+    told = mapped(MotionProblem(requests=Requests(lifts=lifts)), doubted()).requests
+    assert [(lift.phase, lift.touching) for lift in told.lifts] == [("ground 1", (name(2),))] * 2
+
+
 def test_a_phase_that_is_no_more_is_not_retimed() -> None:
     requests = Requests(timings=(PhaseTiming("Longer", "flight 1", factor=1.2),))
+    with pytest.raises(JoinedPhase) as caught:
+        mapped(MotionProblem(requests=requests), doubted())
+    assert caught.value.kept == ("flight 2", "ground 3")
+
+
+def test_a_phase_that_never_was_is_told_with_those_that_are() -> None:
+    requests = Requests(timings=(PhaseTiming("Longer", "flight 7", factor=1.2),))
     with pytest.raises(UnknownPhaseIn) as caught:
         mapped(MotionProblem(requests=requests), doubted())
-    assert caught.value.known == ("flight 2", "ground 3")
+    assert caught.value.known == tuple(phase.name for phase in found().phases)
