@@ -7,6 +7,7 @@
   batch CLIPS... --recipes R... --out DIR many clips with many recipes; goes on where it ended
   doctor CLIP [--write-recipe FILE]       what is wrong with a clip, and remedies
   doctor --table [FOLDER] --out DIR       clean clips, damaged, diagnosed and repaired: a table
+  doctor --fits [FOLDER] --out DIR        the same, fitted after the repair
   test [pytest arguments]                 run the tests
   figures --out DIR                       measure everything that the project promises
   gallery [NAMES...] [--out DIR]          the thesis's results and the scene's, with a table

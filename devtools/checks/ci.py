@@ -84,6 +84,7 @@ def shared_checks() -> Iterator[Check]:
     yield measure("the benchmark", "benchmark --quick")
     yield measure("the hostile campaign", "campaign --cases 1000")
     yield measure("recordings damaged, diagnosed and repaired", "doctor --table --quick")
+    yield measure("what is repaired is fitted", "doctor --fits --quick")
     yield measure("reduced keys", "keys")
     yield measure("nothing goes through anything", "solid --quick")
     yield measure("every kind of edit on a jump", "survey --quick")

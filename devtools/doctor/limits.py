@@ -8,9 +8,9 @@ import numpy as np
 
 from ...solver.doctor.finding import FindingKind
 from ..figures.limits import WorstFigure
+from .fits import NOISE, WITHOUT_FLIGHT, FittedClip
 from .measure import Examined
 
-NOISE = "30 Hz, 3 mm and 1° noise"
 ANY = "size × 1.6"  # no ratio of units
 
 
@@ -59,4 +59,28 @@ def figures(examined: Sequence[Examined]) -> list[WorstFigure]:
     if noisy:
         name = "joint centres off after noise was smoothed (mean)"
         made.append(WorstFigure(name, float(np.mean(noisy)), "cm", 2.5, 1.5))
+    return made
+
+
+def fit_figures(fitted: Sequence[FittedClip]) -> list[WorstFigure]:
+    """Every figure of the fits."""
+    failed = [each for each in fitted if not each.valid]
+    valid = 100.0 * (1.0 - len(failed) / len(fitted))
+    where = "; ".join(f"{each.clip}, {each.damage or 'clean'}" for each in failed)
+    made = [WorstFigure("fits that end with a valid motion", valid, "%", 100.0, 100.0, where, True)]
+    noisy = [each for each in fitted if each.valid and each.damage == NOISE]
+    grounded = [each for each in fitted if each.valid and each.damage == WITHOUT_FLIGHT]
+    if noisy:
+        off = 100.0 * float(np.mean([each.off_original for each in noisy]))
+        worst = max(noisy, key=lambda each: each.slides)
+        made += [
+            WorstFigure(f"{NOISE}: joint centres off (mean)", off, "cm", 2.5, 1.5),
+            WorstFigure(
+                f"{NOISE}: sliding left", 1000.0 * worst.slides, "mm", 5.0, 1.0, worst.clip
+            ),
+        ]
+    if grounded:
+        worst = max(grounded, key=lambda each: each.off_fitted)
+        name, off = f"{WITHOUT_FLIGHT}: joint centres off (worst)", 100.0 * worst.off_fitted
+        made.append(WorstFigure(name, off, "cm", 2.5, 1.5, worst.clip))
     return made

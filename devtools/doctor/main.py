@@ -1,8 +1,9 @@
 """The doctor: python3 dev.py doctor CLIP, or doctor --table [FOLDER] [--out DIR] [--quick].
 
 The first says what is wrong with a clip (operators/headless). The table damages clean clips in
-known ways, has them diagnosed and repaired, and ends with 1 where a limit is missed. Over the clips
-of examples/recordings, and not quick, it writes docs/doctor.md anew.
+known ways, has them diagnosed and repaired, and ends with 1 where a limit is missed; with --fits
+instead of --table they are fitted, too. Over the clips of examples/recordings, and not quick, it
+writes docs/doctor.md or docs/fits.md anew.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import argparse
 import json
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
@@ -18,45 +19,79 @@ from ...operators.headless.cli import main as told
 from ...solver.data.recording import Recording
 from ...solver.skeleton.bind_pose import bind_frames
 from ..environment.virtual_environment import ROOT
+from ..figures.limits import WorstFigure
 from ..recordings import HELD, read
 from .damages import DAMAGES
-from .limits import figures
+from .fits import FittedClip, fits, one_of_each_kind
+from .limits import figures, fit_figures
 from .measure import Examined, examine, examine_clean, without_own_faults
-from .table import page, text
+from .table import fits_page, page, text
 
-PAGE = ROOT / "docs" / "doctor.md"
+PAGE, FITS_PAGE = ROOT / "docs" / "doctor.md", ROOT / "docs" / "fits.md"
 READ = (".bvh", ".amc", ".fbx")
 QUICK = ("forward_jump_116cm", "run_3")
 LONGEST = 5.0  # s, of a clip that is damaged; all of it is looked at undamaged
 
 
 def main(argv: list[str]) -> int:
-    if "--table" not in argv:
+    if "--table" not in argv and "--fits" not in argv:
         return told(["doctor", *argv])
     parser = argparse.ArgumentParser(prog="dev.py doctor", description=__doc__)
-    parser.add_argument("--table", action="store_true")
+    which = parser.add_mutually_exclusive_group(required=True)
+    which.add_argument("--table", action="store_true")
+    which.add_argument("--fits", action="store_true")
     parser.add_argument("folder", nargs="?", type=Path, default=HELD, metavar="FOLDER")
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
     parser.add_argument("--quick", action="store_true", help="two clips only")
     options = parser.parse_args(argv)
+    chosen = (clip for clip in clips(options.folder) if not options.quick or clip[0] in QUICK)
+    options.out.mkdir(parents=True, exist_ok=True)
+    whole = options.folder == HELD and not options.quick
+    made = fits_table if options.fits else table
+    return made(chosen, options.out, write_page=whole)
+
+
+def table(chosen: Iterable[tuple[str, Recording]], out: Path, *, write_page: bool) -> int:
+    """Clips damaged, diagnosed and repaired."""
     began = time.perf_counter()
-    examined: list[Examined] = []
-    for name, recording in clips(options.folder):
-        if not options.quick or name in QUICK:
-            examined += examine_all(name, recording)
+    examined = [each for clip in chosen for each in examine_all(*clip)]
     minutes = (time.perf_counter() - began) / 60.0
     found = figures(examined)
-    options.out.mkdir(parents=True, exist_ok=True)
-    content = {
-        "figures": [{**asdict(f), "ok": f.ok} for f in found],
-        "clips": [{**asdict(e), "kind": e.kind and e.kind.value} for e in examined],
-    }
-    words = json.dumps(content, indent=1, ensure_ascii=False)
-    (options.out / "figures.json").write_text(words + "\n", encoding="utf-8")
-    if options.folder == HELD and not options.quick:
+    rows = [{**asdict(e), "kind": e.kind and e.kind.value} for e in examined]
+    write_json(out / "figures.json", found, rows)
+    if write_page:
         PAGE.write_text(page(examined, found, minutes), encoding="utf-8")
+    return tell(found, f"{len(examined)} examinations in {minutes:.1f} minutes; all in {out}")
+
+
+def fits_table(chosen: Iterable[tuple[str, Recording]], out: Path, *, write_page: bool) -> int:
+    """Clips damaged, repaired and fitted."""
+    began = time.perf_counter()
+    fitted: list[FittedClip] = []
+    for name, recording in chosen:
+        mine = list(fits(name, first_part(name, recording), recording, one_of_each_kind()))
+        failed = ", ".join(each.damage for each in mine if not each.valid) or "nothing"
+        print(f"{name}: not fitted {failed}", flush=True)
+        fitted += mine
+    minutes = (time.perf_counter() - began) / 60.0
+    found = fit_figures(fitted)
+    write_json(out / "fits.json", found, [asdict(each) for each in fitted])
+    if write_page:
+        FITS_PAGE.write_text(fits_page(fitted, found, minutes), encoding="utf-8")
+    return tell(found, f"{len(fitted)} fits in {minutes:.1f} minutes; all in {out}")
+
+
+def write_json(path: Path, found: Sequence[WorstFigure], clips: list[dict[str, object]]) -> None:
+    """The figures and what they are made of."""
+    content = {"figures": [{**asdict(f), "ok": f.ok} for f in found], "clips": clips}
+    words = json.dumps(content, indent=1, ensure_ascii=False)
+    path.write_text(words + "\n", encoding="utf-8")
+
+
+def tell(found: Sequence[WorstFigure], how_many: str) -> int:
+    """Prints the figures; 1 where one is missed."""
     print(text(found))
-    print(f"{len(examined)} examinations in {minutes:.1f} minutes; all in {options.out}")
+    print(how_many)
     return 1 if any(f.missed for f in found) else 0
 
 
@@ -80,10 +115,15 @@ def imported(path: Path) -> Recording:
     return read_recording(import_clip(path).armature)
 
 
+def first_part(name: str, recording: Recording) -> Recording:
+    """What of a clip is damaged, without faults of its own."""
+    last = recording.frames[0] + LONGEST * recording.rate
+    return without_own_faults(name, recording.window(recording.frames[0], last))
+
+
 def examine_all(name: str, recording: Recording) -> list[Examined]:
     """A clip as it is, and, without faults of its own, with each damage."""
-    last = recording.frames[0] + LONGEST * recording.rate
-    part = without_own_faults(name, recording.window(recording.frames[0], last))
+    part = first_part(name, recording)
     found = [examine_clean(name, recording), *(examine(name, part, each) for each in DAMAGES)]
     missed = ", ".join(each.damage for each in found if not each.found) or "nothing"
     print(f"{name}: missed {missed}", flush=True)
