@@ -38,6 +38,7 @@ def named_folder() -> Path:
     folder = CACHE / "types"
     folder.mkdir(parents=True, exist_ok=True)
     link = folder / "hangtime"
-    if not link.exists():
+    if not link.exists() or not link.samefile(ROOT):  # of a checkout that was moved, or another's
+        link.unlink(missing_ok=True)
         link.symlink_to(ROOT, target_is_directory=True)
     return folder
