@@ -8,8 +8,9 @@ from .motion_clip import MotionClip, UpAxis, forward_kinematics, rest_axes
 ACCLAIM_UNIT = 0.0254 / 0.45  # an inch over the scale that the CMU recordings carry
 LIKELY_UNITS = (1.0, 0.1, ACCLAIM_UNIT, 0.0254, 0.01, 0.001)  # m
 LIKELY_HEIGHT = 1.7  # m
-LONGEST_WAY = 1.35  # of a person's height, along the bones from fingertips to toes
+LONGEST_PATH = 1.35  # of a person's height, along the bones from fingertips to toes
 SAMPLES = 32
+MOST_STRETCHED = 0.05  # of a bone that is one; more, and it moves beside what it hangs on
 
 
 def guess_up(clip: MotionClip) -> UpAxis:
@@ -28,7 +29,7 @@ def guess_up(clip: MotionClip) -> UpAxis:
 def guess_unit(clip: MotionClip) -> float:
     """Metres per unit: the likely unit that makes the figure nearest in ratio to 1.7 m tall, by the
     lengths of its bones, for who lies or crawls is no smaller."""
-    return likely_unit(_longest_way(clip) / LONGEST_WAY)
+    return likely_unit(_longest_path(clip) / LONGEST_PATH)
 
 
 def likely_unit(height: float) -> float:
@@ -38,17 +39,35 @@ def likely_unit(height: float) -> float:
     return min(LIKELY_UNITS, key=lambda unit: abs(np.log(unit * height / LIKELY_HEIGHT)))
 
 
-def _longest_way(clip: MotionClip) -> float:
+def _longest_path(clip: MotionClip) -> float:
     """Units from one tip of the skeleton to another, along its bones, at the longest."""
-    lengths = np.linalg.norm(np.median(clip.positions[_sampled(clip)], axis=0), axis=1)
-    deepest, longest = np.linalg.norm(rest_axes(clip), axis=1), 0.0
+    lengths, longest = _bone_lengths(clip), 0.0
+    tips = (0.0 if joint.tip is None else float(np.linalg.norm(joint.tip)) for joint in clip.joints)
+    deepest = np.array([*tips])
     for j, joint in reversed([*enumerate(clip.joints)]):
         longest = max(longest, float(deepest[j]))
         if joint.parent >= 0:
-            way = lengths[j] + deepest[j]
-            longest = max(longest, float(deepest[joint.parent] + way))
-            deepest[joint.parent] = max(deepest[joint.parent], way)
+            path = lengths[j] + deepest[j]
+            longest = max(longest, float(deepest[joint.parent] + path))
+            deepest[joint.parent] = max(deepest[joint.parent], path)
     return longest
+
+
+def _bone_lengths(clip: MotionClip) -> FloatArray:
+    """(J,) units from each joint's parent to it; 0 where that is no bone, but where the figure is:
+    of a root, below roots that stand still and carry all else, and of what moves freely."""
+    recorded = np.linalg.norm(clip.positions[_sampled(clip)], axis=2)
+    lengths = np.median(recorded, axis=0)
+    lengths[np.ptp(recorded, axis=0) > MOST_STRETCHED * lengths] = 0.0
+    parents = [joint.parent for joint in clip.joints]
+    branches = {parent for parent in parents if parents.count(parent) > 1}
+    above = {-1}
+    for j, parent in enumerate(parents):
+        if parent in above:
+            lengths[j] = 0.0
+            if branches - {-1} and j not in branches:
+                above.add(j)
+    return np.asarray(lengths)
 
 
 def _sampled_points(clip: MotionClip) -> FloatArray:

@@ -8,7 +8,12 @@ import pytest
 from hangtime.bridge.formats.acclaim import find_asf, read_acclaim
 from hangtime.bridge.formats.bvh import read_bvh
 from hangtime.bridge.formats.guess import ACCLAIM_UNIT, guess_unit, guess_up
-from hangtime.bridge.formats.motion_clip import forward_kinematics, rest_axes, to_recording
+from hangtime.bridge.formats.motion_clip import (
+    Joint,
+    forward_kinematics,
+    rest_axes,
+    to_recording,
+)
 from hangtime.bridge.formats.obj import UnreadableMesh, read_obj
 from hangtime.devtools.recordings import HOPS
 from hangtime.solver.data.faults import ClipNotOpened, NonFiniteKey, UnreadableClip
@@ -383,6 +388,20 @@ def test_who_lies_is_no_smaller() -> None:
     rotations = clip.rotations.copy()
     rotations[:, 0] = axis_rotation(0, np.full(len(rotations), np.pi / 2)) @ rotations[:, 0]
     assert guess_unit(replace(clip, rotations=rotations)) == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize("metres", [0.0, 10.0])
+def test_a_root_that_stands_still_far_off_makes_nobody_larger(metres: float) -> None:
+    """As many suits export it: the hips hang on a joint that marks where the stage is."""
+    clip, unit = load_clip("rokoko_jesse_dance.bvh"), 0.01
+    still = Joint("Reference", -1, np.zeros(3))
+    joints = (still, *(replace(each, parent=each.parent + 1) for each in clip.joints))
+    count = len(clip.positions)
+    positions = np.concatenate([np.zeros((count, 1, 3)), clip.positions], axis=1)
+    positions[:, 1] += [metres / unit, 0.0, 0.0]
+    turned = np.concatenate([np.tile(np.eye(3), (count, 1, 1, 1)), clip.rotations], axis=1)
+    far = replace(clip, joints=joints, positions=positions, rotations=turned)
+    assert guess_unit(far) == pytest.approx(unit)
 
 
 def test_up_is_guessed_without_telling_names() -> None:
