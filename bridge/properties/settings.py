@@ -363,6 +363,7 @@ class HangtimeAction(bpy.types.PropertyGroup):
     refined: declared(boolean(), options=HIDDEN)  # by Refine, whose weights are of its edit
     performer: declared(target(), options=HIDDEN)  # of other limbs; none: who has the recording
     accepted: declared(boolean(), options=HIDDEN)
+    lengthens: declared(boolean(), options=HIDDEN)  # the scene, which goes to its end
     report: declared(text(), options=HIDDEN)  # the report's text
     times: declared(text(), options=HIDDEN)  # its time map: recorded frames, adapted frames
     overlaps: declared(text(), options=HIDDEN)  # what is in what: of the recording, of itself

@@ -1,6 +1,8 @@
 """The scene's last frame, which goes along with results that are longer than what they were made
 from, and back as they are discarded."""
 
+from math import floor
+
 import bpy
 
 from ..accessors import play_to_end, shown_range, source_of
@@ -13,22 +15,25 @@ def play_longer(
 ) -> None:
     """Where a scene plays to its end what an armature's result was made from, it plays the result
     to its own."""
-    kept, end = scene_settings(scene), scene.frame_end
-    play_to_end(scene, *_ends(armature, result))
-    if scene.frame_end != end:
-        if end != kept.lengthened_to:  # the artist's own, not an earlier result's
-            kept.own_end = end
-        kept.lengthened_to = scene.frame_end
+    kept, (before, last) = scene_settings(scene), _ends(armature, result)
+    if scene.frame_end != kept.lengthened_to:  # the artist's own, from which all counts anew
+        kept.own_end = kept.lengthened_to = scene.frame_end
+        for _, earlier in _results(scene):
+            action_settings(earlier).lengthens = False
+    action_settings(result).lengthens = floor(before) <= scene.frame_end
+    play_to_end(scene, before, last)
+    kept.lengthened_to = scene.frame_end
 
 
 def play_what_is_left(scene: bpy.types.Scene) -> None:
-    """After a result has gone: the scene ends as if only those that are left had ever been made,
-    of any armature; but it stays where the artist has changed it since."""
+    """After a result has gone: the scene ends as if only those that are left had been made since
+    the artist set its end, of any armature; but it stays where the artist has changed it since."""
     kept = scene_settings(scene)
     if scene.frame_end != kept.lengthened_to:
         return
     scene.frame_end = kept.own_end
-    for before, last in sorted(_ends(*each) for each in _results(scene)):
+    left = (each for each in _results(scene) if action_settings(each[1]).lengthens)
+    for before, last in sorted(_ends(*each) for each in left):
         play_to_end(scene, before, last)
     kept.lengthened_to = scene.frame_end
 

@@ -96,11 +96,24 @@ def test_it_stays_where_the_artist_has_put_it_since() -> None:
 
 
 @pytest.mark.usefixtures("_figures")
-def test_an_end_that_the_artist_put_between_two_results_is_the_one_to_go_back_to() -> None:
+@pytest.mark.parametrize("end", [50, 55])
+def test_an_end_that_the_artist_put_between_two_results_is_the_one_to_go_back_to(end: int) -> None:
     make("A", 60)
-    bpy.context.scene.frame_end = 55
+    bpy.context.scene.frame_end = end
     make("B", 70)
     discard("B", 70)
+    assert bpy.context.scene.frame_end == end
+    discard("A", 60)
+    assert bpy.context.scene.frame_end == end
+
+
+@pytest.mark.usefixtures("_figures")
+def test_a_result_of_what_the_scene_did_not_play_to_its_end_never_lengthens_it() -> None:
+    rigs.animate(rigs.make_armature(name="C"), frames=(1, 58))
+    make("C", 110)
+    make("A", 60)
+    make("B", 60)
+    discard("B", 60)
     assert bpy.context.scene.frame_end == 60
     discard("A", 60)
-    assert bpy.context.scene.frame_end == 55
+    assert bpy.context.scene.frame_end == END
