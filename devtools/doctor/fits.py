@@ -12,9 +12,8 @@ import numpy as np
 
 from ...operators.words.messages import sentence
 from ...solver.analysis.performance import perform
-from ...solver.arrays import FloatArray
 from ...solver.body.character import build_character
-from ...solver.data.contacts import Interval, gaps
+from ...solver.data.contacts import gaps
 from ...solver.data.faults import Fault
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
@@ -22,13 +21,14 @@ from ...solver.doctor.examination.diagnose import diagnose
 from ...solver.doctor.examination.repair import repaired
 from ...solver.fitting.fit import Fit
 from ...solver.results.certificate import loaded_drifts
+from ...solver.results.report import fit_quality
 from ...solver.worker.pipeline import StageClock, fit_subject, measure, no_fit
 from .damages import DAMAGES, Damage
 
 NOISE = "30 Hz, 3 mm and 1° noise"
 WITHOUT_FLIGHT = "part without flight"
 LEAST = 1.0  # s, of such a part
-LONGEST = 5.0  # s
+LONGEST = 5.0  # s, of what is damaged or fitted
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,8 @@ class FittedClip:
     """What became of a fit. damage: its name, WITHOUT_FLIGHT, or "" for the clean clip. valid:
     whether it ended with a valid motion, else `said` tells why not. off: m, rms of the joint
     centres from the undamaged clip, and from the repaired one that was fitted. slides: m, the
-    furthest that a contact slides while it carries. let_go: contacts that it does not hold."""
+    furthest that a contact slides while it carries. let_go: contacts that it does not hold. carried:
+    the share of its time in which something unseen carries the body."""
 
     clip: str
     damage: str
@@ -46,6 +47,7 @@ class FittedClip:
     off_fitted: float = 0.0
     slides: float = 0.0
     let_go: int = 0
+    carried: float = 0.0
 
 
 def one_of_each_kind() -> list[Damage]:
@@ -63,8 +65,7 @@ def fits(
     yield fitted(name, "", part, part)
     for damage in damages:
         damaged = damage.of(part)
-        mended = repaired(damaged.recording, diagnose(damaged.recording).repairs)
-        yield fitted(name, damage.name, mended, damaged.original)
+        yield fitted(name, damage.name, damaged.recording, damaged.original)
     grounded = without_flight(whole)
     if grounded is not None:
         yield fitted(name, WITHOUT_FLIGHT, grounded, grounded)
@@ -72,22 +73,28 @@ def fits(
 
 def without_flight(recording: Recording) -> Recording | None:
     """The longest part of a clip without any flight, at most LONGEST; None where there is none of
-    LEAST."""
-    schedule = measure(recording, MotionProblem()).analysis.schedule
-    flights = [(each.start, each.end) for each in schedule.flights]
-    parts = gaps(flights, schedule.duration)
-    longest = max(parts, key=lambda each: each.end - each.start, default=Interval(0.0, 0.0))
-    end = min(longest.end, longest.start + LONGEST)
-    if end - longest.start < LEAST:
-        return None
-    first, last = np.interp((longest.start, end), recording.times, recording.frames)
-    return recording.window(float(np.ceil(first)), float(np.floor(last)))
+    LEAST. What seems to fly at the ends of a part that is looked at by itself is left out."""
+    part = recording
+    while part.times[-1] - part.times[0] >= LEAST:
+        schedule = measure(part, MotionProblem()).analysis.schedule
+        if not schedule.flights and part.times[-1] - part.times[0] <= LONGEST:
+            return part
+        grounded = gaps(((each.start, each.end) for each in schedule.flights), schedule.duration)
+        if not grounded:
+            return None
+        longest = max(grounded, key=lambda each: each.end - each.start)
+        end = min(longest.end, longest.start + LONGEST)
+        first, last = np.interp((longest.start, end), part.times - part.times[0], part.frames)
+        part = part.window(float(np.ceil(first)), float(np.floor(last)))
+    return None
 
 
 def fitted(name: str, damage: str, recording: Recording, original: Recording) -> FittedClip:
-    """The fit of a recording, beside the undamaged one at the same frames."""
+    """The fit of a recording, with what the doctor repairs of a damaged one, beside the undamaged
+    one at the same frames."""
     try:
-        subject = measure(recording, MotionProblem())
+        mended = recording if recording is original else repaired_by_doctor(recording)
+        subject = measure(mended, MotionProblem())
         fit = fit_subject(subject, StageClock())
         if not fit.solved:
             return FittedClip(name, damage, False, sentence(no_fit(subject, fit)))
@@ -95,10 +102,19 @@ def fitted(name: str, damage: str, recording: Recording, original: Recording) ->
         return FittedClip(name, damage, False, sentence(fault))
     drifts = loaded_drifts(fit.motion)
     slides = max((float(each.slide.max(initial=0.0)) for each in drifts), default=0.0)
-    performance = fit.performance
-    apart = fit.motion.joint_centres(performance.times) - performance.centres
-    off = off_original(fit, original), _rms(apart)
-    return FittedClip(name, damage, True, "", *off, slides, len(fit.let_go))
+    off = off_original(fit, original), 0.01 * fit_quality(fit).joint_centres_rms_cm
+    return FittedClip(name, damage, True, "", *off, slides, len(fit.let_go), carried(fit))
+
+
+def repaired_by_doctor(recording: Recording) -> Recording:
+    """With all remedies that the doctor offers."""
+    return repaired(recording, diagnose(recording).repairs)
+
+
+def carried(fit: Fit) -> float:
+    """The share of a fit's time in which something unseen carries the body."""
+    schedule = fit.schedule
+    return sum(each.end - each.start for each in schedule.unseen) / schedule.duration
 
 
 def off_original(fit: Fit, original: Recording) -> float:
@@ -107,8 +123,5 @@ def off_original(fit: Fit, original: Recording) -> float:
     _, ours, theirs = np.intersect1d(
         found.recording.frames, true.recording.frames, return_indices=True
     )
-    return _rms(fit.motion.joint_centres(found.times[ours]) - true.centres[theirs])
-
-
-def _rms(apart: FloatArray) -> float:
+    apart = fit.motion.joint_centres(found.times[ours]) - true.centres[theirs]
     return float(np.sqrt((apart**2).sum(axis=-1).mean()))

@@ -22,7 +22,7 @@ from ..environment.virtual_environment import ROOT
 from ..figures.limits import WorstFigure
 from ..recordings import HELD, read
 from .damages import DAMAGES
-from .fits import FittedClip, fits, one_of_each_kind
+from .fits import LONGEST, FittedClip, fits, one_of_each_kind
 from .limits import figures, fit_figures
 from .measure import Examined, examine, examine_clean, without_own_faults
 from .table import fits_page, page, text
@@ -30,7 +30,6 @@ from .table import fits_page, page, text
 PAGE, FITS_PAGE = ROOT / "docs" / "doctor.md", ROOT / "docs" / "fits.md"
 READ = (".bvh", ".amc", ".fbx")
 QUICK = ("forward_jump_116cm", "run_3")
-LONGEST = 5.0  # s, of a clip that is damaged; all of it is looked at undamaged
 
 
 def main(argv: list[str]) -> int:
@@ -44,8 +43,10 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
     parser.add_argument("--quick", action="store_true", help="two clips only")
     options = parser.parse_args(argv)
-    chosen = (clip for clip in clips(options.folder) if not options.quick or clip[0] in QUICK)
+    chosen = [clip for clip in clips(options.folder) if not options.quick or clip[0] in QUICK]
     options.out.mkdir(parents=True, exist_ok=True)
+    if not chosen:
+        parser.error(f"there is no clip to look at in {options.folder}")
     whole = options.folder == HELD and not options.quick
     made = fits_table if options.fits else table
     return made(chosen, options.out, write_page=whole)

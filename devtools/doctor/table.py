@@ -40,17 +40,18 @@ FITS_HEAD = """# Fits of what the doctor repairs
 machine with 2 cores) and wrote this page; `DIR/fits.json` has every number.
 """
 FITS_NOTES = """
-The clips of `docs/doctor.md`, each with one damage of every finding, repaired by all that the
-doctor offers and then fitted with nothing else said. *Valid*: the fit ends with a motion in which
-the laws of motion and its contacts hold. *Off the clip*: rms distance of the joint centres from the
-repaired clip that was fitted, *off the original* from the undamaged one at the same frames; median
-and worst over the clips. *Slides*: the furthest that a contact slides while it carries. *Let go*:
-contacts that were found but that the fit does not hold, which it tells. The last row are the
-longest parts of the clips, of at most 5 s, in which nothing flies.
+The clips of `docs/doctor.md`, each with one damage of every finding and the noise of video,
+repaired by all that the doctor offers and then fitted with nothing else said. *Valid*: the fit ends
+with a motion in which the laws of motion and its contacts hold. *Off the clip*: rms distance of the
+joint centres from the repaired clip that was fitted, *off the original* from the undamaged one at
+the same frames; median and worst over the clips. *Slides*: the furthest that a contact slides while
+it carries. *Let go*: contacts that were found but that the fit does not hold; *carried*: the most
+of a clip in which something unseen carries the body. It tells both, for with these a fit can always
+end. The last row holds the longest parts of the clips, of at most 5 s, in which nothing flies.
 """
 FITS_COLUMNS = (
     *("damage", "clips", "valid", "off the clip (cm)", "off the original (cm)"),
-    *("slides (mm)", "let go"),
+    *("slides (mm)", "let go", "carried (%)"),
 )
 COLUMNS = (
     *("damage", "clips", "found", "other findings", "off before (cm)", "after (cm)"),
@@ -132,6 +133,7 @@ def fits_row(alike: Sequence[FittedClip]) -> str:
         cells.append(f"{np.median(off):.1f} ({max(off):.1f})")
     cells.append(f"{1000.0 * max((each.slides for each in valid), default=float('nan')):.2f}")
     cells.append(str(sum(each.let_go for each in valid)))
+    cells.append(f"{100.0 * max((each.carried for each in valid), default=float('nan')):.0f}")
     return f"| {' | '.join(cells)} |"
 
 

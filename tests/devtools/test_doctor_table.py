@@ -56,7 +56,7 @@ def test_a_fit_that_does_not_end_is_a_miss_and_told() -> None:
     assert found[f"{NOISE}: joint centres off (mean)"].value == pytest.approx(1.3)
     assert found[f"{NOISE}: sliding left"].value == pytest.approx(0.4)
     text = fits_page([good, failed], list(found.values()), 3.0)
-    assert f"| {NOISE} | 1 | 1 | 0.9 (0.9) | 1.3 (1.3) | 0.40 | 0 |" in text
+    assert f"| {NOISE} | 1 | 1 | 0.9 (0.9) | 1.3 (1.3) | 0.40 | 0 | 0 |" in text
     assert "| jump of 0.4 m | 1 | 0 (not run) |" in text
     assert "run, jump of 0.4 m: No motion was found." in text
 
