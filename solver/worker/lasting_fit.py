@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..analysis.performance import Performance, leans
+from ..analysis.performance import Performance, leans, snap_tolerance
 from ..data.contacts import ContactSchedule, Interval, gaps
 from ..data.row_kinds import RowKind
 from ..doctor.local_poses import runs
@@ -66,11 +66,17 @@ def lasting_fit(
         let_go += released
     doubted = () if periodic or not found.solved else _doubted(found)
     if doubted:
-        told = _unseen_too(schedule, doubted)
-        again = fit(performance, told, rides=rides(told), progress=progress)
-        if again.solved and _off(again) < MUCH_NEARER * _off(found):
-            found = again
+        found = _nearer(found, _unseen_too(schedule, doubted), rides, progress)
     return replace(found, let_go=tuple(let_go))
+
+
+def _nearer(found: Fit, told: ContactSchedule, rides: Rides, progress: Progress | None) -> Fit:
+    """The fit with more unseen support, where that is other than before and brings it much nearer;
+    else as it is."""
+    if told.unseen == found.schedule.unseen:
+        return found
+    again = fit(found.performance, told, rides=rides(told), progress=progress)
+    return again if again.solved and _off(again) < MUCH_NEARER * _off(found) else found
 
 
 def _off(found: Fit) -> float:
@@ -81,7 +87,14 @@ def _off(found: Fit) -> float:
 
 def _doubted(found: Fit) -> tuple[Interval, ...]:
     """Where a fit far from its recording may lack what carried the body."""
-    return () if _off(found) < FAR else (*_never_flown(found), *_leaning(found))
+    return (
+        ()
+        if _off(found) < FAR
+        else (
+            *_never_flown(found),
+            *leaning(found.performance, found.schedule),
+        )
+    )
 
 
 def _never_flown(found: Fit) -> tuple[Interval, ...]:
@@ -97,10 +110,18 @@ def _never_flown(found: Fit) -> tuple[Interval, ...]:
     )
 
 
-def _leaning(found: Fit) -> tuple[Interval, ...]:
-    """Where hands, knees or the trunk are on the floor: what they carry no contact tells."""
-    times, leaning = found.performance.times, leans(found.performance, found.schedule.floor_m)
-    return tuple(Interval(float(times[a]), float(times[b])) for a, b in runs(leaning) if b > a)
+def leaning(performance: Performance, schedule: ContactSchedule) -> tuple[Interval, ...]:
+    """Where hands, knees or the trunk are on the floor: what they carry no contact tells. No
+    moments of a flight are left between these and contacts: they would spoil the equations."""
+    times, near = performance.times, snap_tolerance(performance)
+    edges, made = np.array(schedule.boundaries), []
+    spans = [(times[a], times[b]) for a, b in runs(leans(performance, schedule.floor_m)) if b > a]
+    for start, end in spans:
+        before, after = edges[edges <= start], edges[edges >= end]
+        first = before.max() if start - before.max() < near else start
+        last = after.min() if after.min() - end < near else end
+        made.append(Interval(float(first), float(last)))
+    return tuple(made)
 
 
 def _accepted(failed: Fit, schedule: ContactSchedule, good_enough: float) -> ContactSchedule:

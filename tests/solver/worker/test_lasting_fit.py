@@ -22,7 +22,7 @@ from hangtime.solver.results.npz_export import save
 from hangtime.solver.results.report import fit_quality
 from hangtime.solver.results.unseen_support import fit_needs
 from hangtime.solver.transcription.motion import dynamics_residual
-from hangtime.solver.worker.lasting_fit import lasting_fit
+from hangtime.solver.worker.lasting_fit import lasting_fit, leaning
 from hangtime.solver.worker.pipeline import (
     AdaptationResult,
     StageClock,
@@ -166,6 +166,27 @@ def test_who_lies_on_the_floor_stays_there() -> None:
     assert fitted.solved
     assert fitted.schedule.contacts
     assert fit_quality(fitted).joint_centres_rms_cm < 1.0  # by its toes alone 9
+
+
+def test_no_moment_of_flight_is_left_between_a_contact_and_what_carries_unseen() -> None:
+    """Who keels over onto the hands, and lifts the feet some milliseconds before they are there."""
+    stands = load_recording(JUMP).window(1.0, 90.0)
+    toes = [i for i, bone in enumerate(stands.bones) if "Toe" in bone.name]
+    share = np.clip((np.arange(len(stands.frames)) - 25) / 35.0, 0.0, 1.0)
+    turn = axis_rotation(0, np.radians(80.0) * (3.0 * share**2 - 2.0 * share**3))
+    hinge = stands.heads[0, toes].mean(axis=0) * [1.0, 1.0, 0.0]
+    heads = np.einsum("tij,tbj->tbi", turn, stands.heads - hinge) + hinge
+    falls = replace(stands, heads=heads, rotations=turn[:, None] @ stands.rotations)
+    analysis = measure(falls, MotionProblem()).analysis
+    performance, schedule = analysis.performance, replace(analysis.schedule, contacts=())
+    (there,) = leaning(performance, schedule)
+    assert 0.0 < there.start < there.end == pytest.approx(schedule.duration)
+    lifted = replace(analysis.schedule.contacts[0], start=0.0, end=there.start - 0.002)
+    (joined,) = leaning(performance, replace(schedule, contacts=(lifted,)))
+    assert joined.start == lifted.end
+    long_before = replace(lifted, end=there.start - 0.2)
+    (apart,) = leaning(performance, replace(schedule, contacts=(long_before,)))
+    assert apart.start == there.start
 
 
 def test_a_figure_without_toes_keeps_its_contacts() -> None:
