@@ -36,8 +36,8 @@ class FittedClip:
     """What became of a fit. damage: its name, WITHOUT_FLIGHT, or "" for the clean clip. valid:
     whether it ended with a valid motion, else `said` tells why not. off: m, rms of the joint
     centres from the undamaged clip, and from the repaired one that was fitted. slides: m, the
-    furthest that a contact slides while it carries. let_go: contacts that it does not hold. carried:
-    the share of its time in which something unseen carries the body."""
+    furthest that a contact slides while it carries. let_go: contacts that it does not hold.
+    carried: the share of its time in which something unseen carries the body."""
 
     clip: str
     damage: str

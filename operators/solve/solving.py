@@ -69,8 +69,9 @@ class Solving:
         self.seen = 0.0
 
     def read(self, share: float) -> None:
-        """So much of the recording has been read, 0 to 1."""
-        self.seen = share
+        """So much of the recording has been read, 0 to 1; what is read once more goes on from the
+        most that was."""
+        self.seen = max(self.seen, share)
 
     def heard(self, progress: Progress) -> None:
         """The worker told of a step."""

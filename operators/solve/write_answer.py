@@ -169,7 +169,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
 
 
 def _tell_aimed(asked: Asked, armature: bpy.types.Object, track: PoseTrack) -> None:
-    """How far bones that stay aimed are from the solution's track, where that counts as a warning,
+    """How far bones that stay aimed are from the solution's track, as a warning where that counts,
     and which poses leave them out."""
     if not asked.aimed:
         return

@@ -79,6 +79,8 @@ def _variant(fault: Fault) -> int:
             return (2 if fault.reached else 1) if fault.worst else 0
         case faults.NothingTouches():
             return bool(fault.touching)
+        case faults.JoinedPhase():
+            return bool(fault.kept)
         case faults.UnseenSupport():
             more = bool(fault.boxes), fault.rate is not None, fault.exchanged
             return max(i for i, each in enumerate((True, *more)) if each)

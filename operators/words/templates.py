@@ -213,9 +213,13 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "{most:g}.",
     faults.UnknownPhaseIn: "“{request}” is about the phase “{phase}”, which the clip does not "
     "have; it has {known:names}.",
-    faults.JoinedPhase: "“{request}” is about the phase “{phase}”, which is joined with others, as "
-    "something unseen carries the body there; choose one that still is by itself ({kept:names}), "
-    "or frames in which what carries the body is recorded.",
+    faults.JoinedPhase: (
+        "“{request}” is about the phase “{phase}”, in which something unseen carries the body, so "
+        "that it is no phase by itself; choose frames in which what carries the body is recorded.",
+        "“{request}” is about the phase “{phase}”, in which something unseen carries the body, so "
+        "that it is no phase by itself; choose {kept:names}, or frames in which what carries the "
+        "body is recorded.",
+    ),
     faults.StillBone: "“{request}” names the bone “{bone}”, which is none of those that physics "
     "moves; those most like it are {likeliest:names}.",
     faults.BadTiming: "“{request}” would last {seconds:.3f} s; change its frames, phase or "

@@ -10,8 +10,8 @@ from typing import Any
 
 from ..analysis.pinned_places import chosen_contacts, phase_of
 from ..constraints.evaluation_context import touches
-from ..data.contacts import Contact, ContactSchedule, Phase
-from ..data.faults import JoinedPhase, PinLetGo, UnknownPhaseIn
+from ..data.contacts import Contact, ContactSchedule, Phase, PhaseKind
+from ..data.faults import JoinedPhase, NothingTouches, PinLetGo, UnknownPhaseIn
 from ..data.problem import MotionProblem, Pin
 from ..data.recording import Recording
 from ..data.requests import Lift, PhaseTiming, Requests, When
@@ -105,6 +105,8 @@ class _Change:
         phase = _named(lift.phase, self.found.phases)
         asked = () if phase is None else self.found.of_phase(phase)
         names = [c.name for c in asked if touches(lift.touching, c)]
+        if phase is not None and not names:
+            raise NothingTouches(lift.name, lift.touching)
         left = [c for c in self.fitted.contacts if c.name in names]
         if phase is None or self._renamed(phase) is not None or not left:
             return replace(lift, phase=self._same_phase(lift))
@@ -120,16 +122,16 @@ class _Change:
             )
         name = self._renamed(phase)
         if name is None:
-            raise JoinedPhase(request.name, request.phase, self._kept)
+            raise JoinedPhase(request.name, request.phase, self._kept(phase.kind))
         return name
 
-    @property
-    def _kept(self) -> tuple[str, ...]:
-        """Names of the found phases that the fit has, too."""
-        return tuple(p.name for p in self.found.phases if self._renamed(p) is not None)
+    def _kept(self, kind: PhaseKind) -> tuple[str, ...]:
+        """Names of the found phases of a kind that the fit has, too."""
+        alike = (p for p in self.found.phases if p.kind is kind)
+        return tuple(p.name for p in alike if self._renamed(p) is not None)
 
     def _renamed(self, phase: Phase) -> str | None:
-        """The name that a found phase has in the fit; None where it is joined with others."""
+        """The name that a found phase has in the fit; None where it is joined or divided."""
         same = (phase.kind, phase.start, phase.end)
         return next((p.name for p in self.fitted.phases if (p.kind, p.start, p.end) == same), None)
 

@@ -104,8 +104,8 @@ class UnknownPhaseIn(RequestFault):
 
 @dataclass
 class JoinedPhase(RequestFault):
-    """A request is about a whole phase that the fit joined with others, as something unseen carries
-    the body there; kept: the phases that are still their own."""
+    """A request is about a whole phase that the fit joined with others or divided, as something
+    unseen carries the body there; kept: the phases of its kind that are still their own."""
 
     phase: str
     kept: tuple[str, ...]

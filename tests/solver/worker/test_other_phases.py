@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hangtime.operators.words.messages import sentence
 from hangtime.solver.data.contacts import ContactSchedule, Interval
-from hangtime.solver.data.faults import JoinedPhase, PinLetGo, UnknownPhaseIn
+from hangtime.solver.data.faults import JoinedPhase, NothingTouches, PinLetGo, UnknownPhaseIn
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.requests import AngleLimit, Lift, PhaseTiming, Requests, When
@@ -102,7 +102,14 @@ def test_a_phase_that_is_no_more_is_not_retimed() -> None:
     requests = Requests(timings=(PhaseTiming("Longer", "flight 1", factor=1.2),))
     with pytest.raises(JoinedPhase) as caught:
         mapped(MotionProblem(requests=requests), doubted())
-    assert caught.value.kept == ("flight 2", "ground 3")
+    assert caught.value.kept == ("flight 2",)
+    assert "choose flight 2, or frames" in sentence(caught.value)
+
+
+def test_a_lift_of_nothing_that_touches_is_told_so() -> None:
+    requests = Requests(lifts=(Lift("Up", "ground 1", ("Nose",)),))
+    with pytest.raises(NothingTouches):
+        mapped(MotionProblem(requests=requests), doubted())
 
 
 def test_a_phase_that_never_was_is_told_with_those_that_are() -> None:
