@@ -58,7 +58,7 @@ class Overlay:
         self._figures.clear()
         self._pictures.clear()
         self._labels = ()
-        redraw().end()
+        redraw().forget()
 
 
 def add(undo: ExitStack) -> Overlay:

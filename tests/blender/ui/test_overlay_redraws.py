@@ -33,6 +33,7 @@ from hangtime.tests.blender.helpers.overlays import (
 from hangtime.ui.overlay import handlers
 from hangtime.ui.overlay.context.figure_cache import FigureCache
 from hangtime.ui.overlay.context.layer import Layer, Part
+from hangtime.ui.overlay.context.redraw import Redraw
 from hangtime.ui.overlay.context.view_context import read_view
 from hangtime.ui.overlay.geometry.shapes import Label, Shape, Standing
 from hangtime.ui.overlay.layer_selection import layers
@@ -110,6 +111,19 @@ def test_overlays_follow_the_viewport(armature: bpy.types.Object) -> None:
     bpy.context.scene.hangtime.view.show = True
     bpy.data.objects.remove(armature)
     assert read_view(context) is None
+
+
+def test_a_state_stays_the_same_object_until_something_changes(
+    armature: bpy.types.Object,
+) -> None:
+    context, looks = viewport(), Redraw()
+    first = looks.begin(context).state
+    looks.end()
+    assert looks.begin(context).state is first
+    constrain(armature, KINDS["POSE"])
+    second = looks.begin(context).state
+    assert second != first
+    assert looks.begin(context).state is second
 
 
 def viewport() -> SimpleNamespace:

@@ -14,13 +14,20 @@ class Redraw:
     the last (POST_PIXEL), between which Blender places handles and nothing can change."""
 
     view: ViewContext | None = None
+    _known: object = None  # the state of the last one
 
     def begin(self, context: bpy.types.Context) -> ViewContext | None:
-        self.view = read_view(context)
+        self.view = read_view(context, self._known)
+        if self.view is not None:
+            self._known = self.view.state
         return self.view
 
     def end(self) -> None:
         self.view = None
+
+    def forget(self) -> None:
+        """Nothing is drawn any more."""
+        self.view = self._known = None
 
 
 @cache

@@ -48,7 +48,8 @@ class ShownMotion:
 
 @dataclass(frozen=True)
 class ViewContext:
-    """The armature that a viewport shows, its settings and motions."""
+    """The armature that a viewport shows, its settings and motions. known: the last state, if any,
+    which stays the same object while it is equal: comparing it with itself takes no time."""
 
     armature: bpy.types.Object
     settings: HangtimeSettings
@@ -56,6 +57,7 @@ class ViewContext:
     frame: float
     metres: float  # of a Blender unit
     rate: float = 24.0  # frames a second
+    known: object = None
 
     @cached_property
     def state(self) -> object:
@@ -63,6 +65,10 @@ class ViewContext:
 
         Reading it takes a fraction of what working them out anew does.
         """
+        now = self._read_state()
+        return self.known if now == self.known else now
+
+    def _read_state(self) -> object:
         armature, recorded, adapted = self.armature, self.recorded, self.adapted
         targets = (row.target for row in self.settings.constraints if row.target is not None)
         return (
@@ -172,8 +178,9 @@ def _told(action: bpy.types.Action | None) -> object:
     return action, stored.times, stored.overlaps
 
 
-def read_view(context: bpy.types.Context) -> ViewContext | None:
-    """Reads the viewport that is being drawn; None where overlays are off or none is due."""
+def read_view(context: bpy.types.Context, known: object = None) -> ViewContext | None:
+    """Reads the viewport that is being drawn; None where overlays are off or none is due. known: as
+    of `ViewContext`."""
     space, scene = view_3d(context), present(context.scene)
     options = scene_settings(scene).view
     if space is None or not (space.overlay.show_overlays and options.show):
@@ -185,4 +192,4 @@ def read_view(context: bpy.types.Context) -> ViewContext | None:
         return None
     frame, metres = scene.frame_current_final, metres_per_unit(scene)
     rate = frames_per_second(scene)
-    return ViewContext(armature, settings_of(armature), options, frame, metres, rate)
+    return ViewContext(armature, settings_of(armature), options, frame, metres, rate, known)
