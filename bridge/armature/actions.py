@@ -48,16 +48,15 @@ def read_recorded_incrementally(
     first: float | None,
     last: float | None,
     beyond: float = 0.0,
-    tell: Callable[[float], object] | None = None,
 ) -> Incremental[Recording]:
-    """Read the recording, a few frames a slice. tell: as of `in_slices`."""
+    """Read the recording, a few frames a slice."""
     if armature is None or current_action(armature) is None:
         whole_frames(armature, first, last)
     assert armature is not None
     showing = showing_recorded(armature)
     with showing():
         frames = whole_frames(armature, first, last, beyond)
-    poses = yield from sample_incrementally(armature, frames, showing, tell)
+    poses = yield from sample_incrementally(armature, frames, showing)
     with showing():
         return recording_of(armature, frames, poses)
 

@@ -19,7 +19,8 @@ from ...solver.arrays import FloatArray
 from .poses import Poses, sample
 
 T = TypeVar("T")
-Incremental = Generator[None, None, T]
+Incremental = Generator[float | None, None, T]
+"""Long work in parts; where it knows, it yields how much is done, 0 to 1."""
 
 SLICE_S = 0.02
 FEWEST_FRAMES = 4  # a slice; each costs one frame more, to go back
@@ -39,11 +40,9 @@ def in_slices(
     frames: FloatArray,
     look: Callable[[FloatArray], T],
     showing: Callable[[], AbstractContextManager[object]] = nullcontext,
-    tell: Callable[[float], object] | None = None,
 ) -> Incremental[list[T]]:
     """What `look` finds at frames (T,), a few a slice. showing: entered for each slice, such as to
-    let an armature perform another action meanwhile. tell: is told the share of frames that are
-    done, 0 to 1."""
+    let an armature perform another action meanwhile."""
     found: list[T] = []
     at, count = 0, FEWEST_FRAMES
     while at < len(frames):
@@ -53,9 +52,7 @@ def in_slices(
         at += count
         spent = perf_counter() - began
         count = max(FEWEST_FRAMES, int(count * min(SLICE_S / spent, 8.0)))
-        if tell is not None:
-            tell(min(at / len(frames), 1.0))
-        yield
+        yield min(at / len(frames), 1.0)
     return found
 
 
@@ -63,10 +60,9 @@ def sample_incrementally(
     armature: bpy.types.Object,
     frames: FloatArray,
     showing: Callable[[], AbstractContextManager[object]] = nullcontext,
-    tell: Callable[[float], object] | None = None,
 ) -> Incremental[Poses]:
-    """Sample poses, a few frames a slice. showing, tell: as of `in_slices`."""
-    found = yield from in_slices(frames, partial(sample, armature), showing, tell)
+    """Sample poses, a few frames a slice. showing: as of `in_slices`."""
+    found = yield from in_slices(frames, partial(sample, armature), showing)
     return Poses(
         found[0].bones,
         found[0].parents,

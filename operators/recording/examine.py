@@ -1,5 +1,7 @@
 """Examine: what is wrong with a recording, before anything is fitted."""
 
+from dataclasses import replace
+
 import bpy
 
 from ...bridge.constraints.bone_mapping import chosen_parts, find_parts, missing_parts
@@ -22,11 +24,12 @@ from ..solve.common import required_armature
 from ..solve.live import redraw
 from ..solve.scene import read_bound, read_surfaces
 from ..solve.session import session
-from ..solve.solving import SolveState
+from ..solve.solving import SolveState, Solving
 from ..solve.task import Task, TaskOperator, answered
 from ..words.doctor_text import HEALTHY
 
 FOUND = "Found {} in the recording; the panel Recording tells what, and the remedies"
+READS = 0.5  # of an examination, the share of playing the take in Blender
 FORGOTTEN = "The repairs that this file held could not be read and are left out; repair anew"
 
 
@@ -38,7 +41,9 @@ class ExamineOperator(TaskOperator, bpy.types.Operator):
         "feet that slide. Nothing is changed; remedies are offered"
     )
     bl_options = {"UNDO"}
-    reading = 0.5
+
+    def _begun(self) -> Solving:
+        return replace(super()._begun(), reads=READS)
 
     def task(self, context: bpy.types.Context) -> Task:
         armature = required_armature(context)

@@ -286,9 +286,7 @@ def read_wanted(armature: bpy.types.Object) -> Incremental[Recording]:
     first, last = wanted_range(settings)
     if first is not None and last is not None and last < first:
         raise FramesReversed(first, last)
-    under_way = session().solving
-    tell = under_way.read if under_way is not None else None
-    recording = yield from read_recorded_incrementally(armature, first, last, BEYOND, tell)
+    recording = yield from read_recorded_incrementally(armature, first, last, BEYOND)
     if first is None or last is None:
         return recording
     return recording.window(*undoubted(settings, (first, last)))

@@ -12,6 +12,7 @@ STAGES = {
     "adapt": "adapting",
     "bounds": "checking in between",
     "explicit": "minimizing effort",
+    "examine": "looking for faults",
 }
 
 
@@ -32,52 +33,46 @@ class SolveState(Enum):
 
 
 MOST_TOLD = 1000.0  # times what is allowed
-READING = 0.05  # of the whole, unless told otherwise
-SOLVED = 0.9
-SHARES = {
-    SolveState.CHECKING: SOLVED,
-    SolveState.WRITING: 0.95,
-    SolveState.PREPARING: 0.95,
-}
+CHECKING, WRITING = 0.9, 0.95  # shares of the whole at which these begin
 
 
 @dataclass
 class Solving:
     """A solve under way. Whoever runs it tells what happens; what cannot happen now raises
     ValueError, for it would be a mistake of ours. of, label: the operator that runs it, and what
-    its button says. analysed: what an analysis found is written, and more is to come. reading: the
-    share of the whole that the recording's reading takes; seen: the share of it that is done."""
+    its button says. analysed: what an analysis found is written, and more is to come. reads: the
+    share of the whole that reading the recording is."""
 
     of: str = ""
     state: SolveState = SolveState.READING
     progress: Progress | None = None
     label: str = "The work"
     analysed: bool = False
-    reading: float = READING
-    seen: float = 0.0
+    reads: float = 0.05
+    _part: float = 0.0  # of the current state
 
     def advance(self, to: SolveState) -> None:
         """The next part begins."""
         order = list(SolveState)
         if order.index(to) <= order.index(self.state):
             raise ValueError(f"{to.name} after {self.state.name}")
-        self.state = to
+        self.state, self._part = to, 0.0
+
+    def did(self, part: float) -> None:
+        """So much of the current state's work, 0 to 1, is done; or of its longest piece."""
+        self._part = max(self._part, part)
 
     def again(self) -> None:
         """The analysis is written, and a solve begins after it."""
         self.state, self.progress, self.analysed = SolveState.READING, None, True
-        self.seen = 0.0
-
-    def read(self, share: float) -> None:
-        """So much of the recording has been read, 0 to 1; what is read once more goes on from the
-        most that was."""
-        self.seen = max(self.seen, share)
+        self._part = 0.0
 
     def heard(self, progress: Progress) -> None:
-        """The worker told of a step."""
+        """The worker told of a step, or of how far it is."""
         if self.state not in (SolveState.SOLVING, SolveState.STOPPING):
             raise ValueError(f"a step while {self.state.value}")
         self.progress = progress
+        self.did(progress.share)
 
     @property
     def can_stop(self) -> bool:
@@ -106,12 +101,18 @@ class Solving:
     @property
     def share(self) -> float:
         """Of the whole, 0 to 1."""
-        if self.state is SolveState.READING:
-            return self.reading * self.seen
-        if self.state in (SolveState.SOLVING, SolveState.STOPPING):
-            solved = self.progress.share if self.progress is not None else 0.0
-            return self.reading + (SOLVED - self.reading) * solved
-        return SHARES.get(self.state, 1.0)
+        match self.state:
+            case SolveState.READING:
+                begin, end = 0.0, self.reads
+            case SolveState.SOLVING | SolveState.STOPPING:
+                begin, end = self.reads, CHECKING
+            case SolveState.CHECKING:
+                begin, end = CHECKING, WRITING
+            case SolveState.WRITING | SolveState.PREPARING:
+                begin, end = WRITING, 1.0
+            case SolveState.ENDED:
+                return 1.0
+        return begin + (end - begin) * self._part
 
     def passes(self, event: str) -> bool:
         """True for events ("Z", "LEFTMOUSE") that go on to Blender.
@@ -130,12 +131,12 @@ class Solving:
 
     @property
     def text(self) -> str:
-        """Stage, percent and the worst constraint."""
+        """Stage, percent and the worst constraint, where there is one."""
         parts = [f"{self.doing}, {100.0 * self.share:.0f} %"]
-        if self.progress is not None and self.state is SolveState.SOLVING:
-            violation = self.progress.violation
-            worst = LAWS.get(self.progress.worst, self.progress.worst)
-            parts.append(f"furthest off: {worst} ({_times(violation)} allowed)")
+        told = self.progress if self.state is SolveState.SOLVING else None
+        if told is not None and told.worst:
+            worst = LAWS.get(told.worst, told.worst)
+            parts.append(f"furthest off: {worst} ({_times(told.violation)} allowed)")
         return ", ".join(parts)
 
 

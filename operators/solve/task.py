@@ -16,7 +16,7 @@ from ..operator_types import OperatorResult
 from .common import FaultyOperator, ReadyOperator, chosen_armature, failed, said
 from .live import editors, redraw_viewports
 from .session import session
-from .solving import READING, SolveState, Solving
+from .solving import SolveState, Solving
 
 LOOK_EVERY = 0.02  # s
 LOOK_AGAIN = 0.1  # s
@@ -25,8 +25,9 @@ STATUS = "Hangtime: {} (Esc cancels)"
 TAKEN_AWAY = "Stopped, because the scene changed meanwhile; nothing was written. Try again"
 
 A = TypeVar("A")
-Task = Generator[PendingRequest | None, None, str]
-"""Work in parts; where it yields a job it waits for that. Returns what to tell the artist."""
+Task = Generator[PendingRequest | float | None, None, str]
+"""Work in parts; where it yields a job it waits for that, and a number is how much of the current
+state's work is done. Returns what to tell the artist."""
 
 
 def answered(job: PendingRequest, kind: type[A]) -> Generator[PendingRequest, None, A]:
@@ -42,8 +43,6 @@ def answered(job: PendingRequest, kind: type[A]) -> Generator[PendingRequest, No
 class TaskOperator(ReadyOperator, FaultyOperator):
     """Mixin: `task` does the work; waits for it in scripts, looks now and then in the interface."""
 
-    reading = READING  # share of the work
-
     def task(self, context: bpy.types.Context) -> Task:
         """The work. Raises any Fault, having changed nothing but what `Solving.analysed` tells."""
         raise NotImplementedError
@@ -55,7 +54,7 @@ class TaskOperator(ReadyOperator, FaultyOperator):
         try:
             while True:
                 job = next(task)
-                if job is not None:
+                if isinstance(job, PendingRequest):
                     job.wait()
         except StopIteration as end:
             finished = True
@@ -69,7 +68,7 @@ class TaskOperator(ReadyOperator, FaultyOperator):
                     shared().close()
 
     def _begun(self) -> Solving:
-        return Solving(type(self).bl_idname, label=type(self).bl_label, reading=self.reading)
+        return Solving(type(self).bl_idname, label=type(self).bl_label)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         if bpy.app.background or context.window is None:
@@ -113,7 +112,9 @@ class TaskOperator(ReadyOperator, FaultyOperator):
         try:
             while perf_counter() < until:
                 job = next(self._task)
-                if job is not None and not self._heard(job):
+                if isinstance(job, float):
+                    self._solving.did(job)
+                elif job is not None and not self._heard(job):
                     break
             goes_on = True
         except StopIteration as end:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 
 from ..arrays import FloatArray
 from ..data.problem import Mend
 from ..data.recording import Recording
-from ..numerics.rotations import rotation_matrix, rotation_vector
+from ..numerics.rotations import quaternion, rotation_matrix, turns_between
 from .figure import Figure
 from .finding import Finding, FindingKind
 from .local_poses import LocalPoses, fourth_differences
@@ -52,57 +50,46 @@ def smoothed(recording: Recording, figure: Figure) -> Recording:
 
     Rotations in the chart about the frame itself, where a cubic is a fair curve.
     """
-    local, count = LocalPoses.of(recording), len(recording.frames)
+    local = LocalPoses.of(recording)
     rotations, heads = local.rotations.copy(), local.heads.copy()
     roots = [b for b, bone in enumerate(recording.bones) if bone.parent < 0]
-    weights = _weights(count, reach(recording.rate), WIDTH * recording.rate)
-    heads[:, roots] = _weighed(weights, local.heads[:, roots])
-    for bone in {*_carriers(recording, figure), *roots}:
-        turns = _weighed_turns(weights, local.rotations[:, bone])
-        rotations[:, bone] = local.rotations[:, bone] @ rotation_matrix(turns)
+    turning = sorted({*_carriers(recording, figure), *roots})
+    heads[:, roots], rotations[:, turning] = _regressed(
+        local.heads[:, roots], local.rotations[:, turning], recording.rate
+    )
     return LocalPoses(rotations, heads).posed(recording)
 
 
+def _regressed(
+    places: FloatArray, rotations: FloatArray, rate: float
+) -> tuple[FloatArray, FloatArray]:
+    """Places (T, R, 3) and rotations (T, B, 3, 3), smoothed. rate: frames a second."""
+    far = min(reach(rate), len(places) - 1)
+    weights = _weights(len(places), far, WIDTH * rate)[..., None, None]
+    turned, placed = np.zeros(rotations.shape[:-1]), weights[:, far] * places
+    quaternions = quaternion(rotations)
+    for lag in range(1, far + 1):  # each two frames at once, for both
+        turns = turns_between(quaternions[:-lag], quaternions[lag:])
+        onwards, back = weights[:-lag, far + lag], weights[lag:, far - lag]
+        turned[:-lag] += onwards * turns
+        turned[lag:] -= back * turns  # a turn's axis is the same in both frames
+        placed[:-lag] += onwards * places[lag:]
+        placed[lag:] += back * places[:-lag]
+    return placed, rotations @ rotation_matrix(turned)
+
+
 def _weights(count: int, far: int, width: float) -> FloatArray:
-    """(T, 2 far + 1), of the frames about each of T; 0 of those that are not there.
-
-    far, width: in frames.
-    """
-    weights = np.zeros((count, 2 * far + 1))
-
-    @cache
-    def cubic(before: int, after: int) -> FloatArray:
-        """Its value at the frame, of so many about it."""
-        u = np.arange(-before, after + 1) / width
-        root = np.exp(-0.25 * u**2)  # of the weight
-        return np.asarray(root * np.linalg.pinv(root[:, None] * u[:, None] ** np.arange(4))[0])
-
-    for t in range(count):
-        before, after = min(t, far), min(count - 1 - t, far)
-        weights[t, far - before : far + after + 1] = cubic(before, after)
-    return weights
-
-
-def _weighed(weights: FloatArray, places: FloatArray) -> FloatArray:
-    """(T, B, 3), of places (T, B, 3)."""
-    far, count = weights.shape[1] // 2, len(places)
-    total = weights[:, far, None, None] * places
-    for k in range(1, min(far, count - 1) + 1):
-        total[:-k] += weights[:-k, far + k, None, None] * places[k:]
-        total[k:] += weights[k:, far - k, None, None] * places[:-k]
-    return total
-
-
-def _weighed_turns(weights: FloatArray, rotations: FloatArray) -> FloatArray:
-    """(T, 3) rad, of the turns from each of rotations (T, 3, 3) to those about it; the turn back
-    is minus the turn there."""
-    far, count = weights.shape[1] // 2, len(rotations)
-    total = np.zeros((count, 3))
-    for k in range(1, min(far, count - 1) + 1):
-        turns = rotation_vector(np.swapaxes(rotations[:-k], 1, 2) @ rotations[k:])
-        total[:-k] += weights[:-k, far + k, None] * turns
-        total[k:] -= weights[k:, far - k, None] * turns
-    return total
+    """(count, 2 far + 1) of the frames from `far` before to `far` after each, in the value there of
+    a cubic through them; 0 of those beyond the ends. width: frames, of the Gaussian."""
+    before = np.minimum(np.arange(count), far)
+    after = before[::-1]
+    found = np.zeros((count, 2 * far + 1))
+    for least, most in sorted({*zip(before.tolist(), after.tolist(), strict=True)}):
+        u = np.arange(-least, most + 1) / width
+        root = np.exp(-0.25 * u**2)  # of the Gaussian
+        cubic = root * np.linalg.pinv(root[:, None] * u[:, None] ** np.arange(4))[0]
+        found[(before == least) & (after == most), far - least : far + most + 1] = cubic
+    return found
 
 
 def _carriers(recording: Recording, figure: Figure) -> set[int]:

@@ -29,7 +29,20 @@ def axis_rotation(axis: int, angle: FloatArray | float) -> FloatArray:
 
 def rotation_vector(R: FloatArray) -> FloatArray:
     """(..., 3) rotation vectors, rad, of (..., 3, 3) rotations: the logarithm, angle in [0, pi]."""
-    q = quaternion(R)
+    return _logarithm(quaternion(R))
+
+
+def turns_between(first: FloatArray, second: FloatArray) -> FloatArray:
+    """(..., 3) rotation vectors, rad, of first^T second: from one unit quaternion (..., 4) to
+    another, in the first's frame, angle in [0, pi]."""
+    (w, v), (to_w, to_v) = ((q[..., :1], q[..., 1:]) for q in (first, second))
+    cosine = w * to_w + np.sum(v * to_v, axis=-1, keepdims=True)
+    turned = np.concatenate([cosine, w * to_v - to_w * v - np.cross(v, to_v)], axis=-1)
+    return _logarithm(np.where(cosine < 0, -turned, turned))
+
+
+def _logarithm(q: FloatArray) -> FloatArray:
+    """(..., 3) rotation vectors, rad, of unit quaternions (..., 4), w not below 0."""
     sine = np.linalg.norm(q[..., 1:], axis=-1, keepdims=True)
     angle = 2 * np.arctan2(sine, q[..., :1])
     scale = np.where(sine > 1e-9, angle / np.maximum(sine, 1e-12), 2.0)

@@ -56,6 +56,7 @@ from .protocol import (
 from .recent_fits import RecentFits
 
 MOST_FITS = 3
+EXAMINING = RequestKind.EXAMINE.value  # the one stage of an examination
 
 Tell = Callable[[Progress], None]
 _Key = tuple[str, str, tuple[SceneObject, ...]]  # of an analysis
@@ -106,7 +107,7 @@ class Service:
 
     def _met(self, request: Request, tell: Tell) -> Answer:
         if request.kind is RequestKind.EXAMINE:
-            return _examined(request)
+            return _examined(request, partial(self._told, request.id, tell))
         subject = self._subject_of(request)
         if request.kind is RequestKind.ANALYSE:
             return _analysed(request.id, subject)
@@ -123,6 +124,12 @@ class Service:
         traces = subject.motion_traces(fitted.motion, fitted.schedule, subject.shape_changes)
         seconds, needs = watch.done[-1].seconds, fit_needs(fitted)
         return Fitted(request.id, fit_quality(fitted), seconds, traces, needs)
+
+    def _told(self, request: int, tell: Tell, share: float) -> None:
+        """An examination has come so far."""
+        if self._ending(request) is Ending.CANCEL:
+            raise Cancel
+        tell(Progress(request, EXAMINING, 0, 0.0, "", share))
 
     def _adapted(self, request: int, subject: Subject, watch: "_Watch") -> Adapted:
         result = solve(subject, watch, partial(self._fit, fitted_by=fit_possible))
@@ -236,7 +243,7 @@ def _analysed(request: int, subject: Subject) -> Analysed:
     )
 
 
-def _examined(request: Request) -> Examined:
+def _examined(request: Request, told: Callable[[float], None]) -> Examined:
     """The diagnosis of a recording as it was before all repairs, and its feet as they are read now.
 
     Raises ClipTooShort, MissingPart, ZeroLengthBone.
@@ -246,7 +253,7 @@ def _examined(request: Request) -> Examined:
     with computable():
         as_made = unplaced(request.recording, placed)
         skin = unplaced_skin(problem.skin, placed)
-        diagnosis = diagnose(as_made, problem.bones, problem.mass, skin, problem.scene)
+        diagnosis = diagnose(as_made, problem.bones, problem.mass, skin, problem.scene, told)
         now = as_asked(request.recording, problem)
         performance = perform(now, build_character(now, chosen=problem.bones), problem.skin)
         feet = find_feet(as_stood(performance, problem.scene))

@@ -10,9 +10,8 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from hangtime.bridge.armature.actions import read_recorded, read_recorded_incrementally
+from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.armature.fcurves import curves_of, put, table
-from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.keys_digest import keys_digest
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.constraints.motion_problem import problem_of, repaired_since
@@ -513,11 +512,3 @@ def test_a_length_is_told_by_the_bone_whose_keys_change_it(
     assert bpy.ops.hangtime.examine() == {"FINISHED"}
     found = {row.name: finding_of(row) for row in findings(jump.hangtime)}
     assert found["bone length"].part == bone
-
-
-def test_how_far_the_reading_is_is_told(lacking) -> None:
-    told: list[float] = []
-    complete(read_recorded_incrementally(lacking, *JUMP_FRAMES, tell=told.append))
-    assert len(told) > 2
-    assert told == sorted(told)
-    assert 0.0 < told[0] < 1.0 == told[-1]

@@ -24,12 +24,8 @@ def test_the_status_bar_says_stage_percent_and_the_worst_constraint() -> None:
 
 
 def test_the_share_never_falls_on_the_way() -> None:
-    under_way = Solving(reading=0.5)
+    under_way = Solving()
     shares = [under_way.share]
-    for share in (0.2, 1.0):
-        under_way.read(share)
-        shares.append(under_way.share)
-    assert shares == [0.0, 0.1, 0.5]
     under_way.advance(SolveState.SOLVING)
     for share in (0.1, 0.6, 1.0):
         under_way.heard(told(share))
@@ -96,3 +92,16 @@ def test_blender_stays_usable_but_for_the_moment_of_writing() -> None:
     assert not under_way.passes("Z")
     assert not under_way.passes("LEFTMOUSE")
     assert under_way.passes("MOUSEMOVE")
+
+
+def test_reading_and_examining_tell_their_share() -> None:
+    under_way = Solving(reads=0.5)
+    texts = []
+    for part in (0.0, 0.5, 1.0, 0.1):  # the last of a shorter piece
+        under_way.did(part)
+        texts.append(under_way.text)
+    assert texts == [f"reading the recording, {share} %" for share in (0, 25, 50, 50)]
+    under_way.advance(SolveState.SOLVING)
+    for share in (0.4, 0.2):  # a search that is made again
+        under_way.heard(Progress(1, "examine", 0, 0.0, "", share))
+        assert under_way.text == "looking for faults, 66 %"
