@@ -51,7 +51,7 @@ def pose_bases(
             basis[:, :3, :3] = proper(basis_under(bone, parent, target)[:, :3, :3]) @ stretch
         result[name] = basis
         new[name] = place(bone, parent, basis)
-        yield
+        yield None
     return result
 
 

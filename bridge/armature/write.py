@@ -90,7 +90,7 @@ def _write_bases(
         written += [(bone, attribute) for attribute in held]
     for bone, attribute in written:
         _write_property(curves, posed[bone], attribute, track.frames, made[bone])
-        yield
+        yield None
     for curve in curves.fcurves:
         fcurves.crop(curve, float(track.frames[0]), float(track.frames[-1]))
 

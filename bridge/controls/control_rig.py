@@ -87,7 +87,7 @@ def found_controls(
     posing = Posing(armature, names, bodies)
     with showing():
         parents = parents_of(armature, sample(armature, frames[:1]), bodies)
-    yield
+    yield None
     looked = yield from in_slices(at, partial(_looks, posing, parents), showing)
     looks = [look for part in looked for look in part]
     groups = used_groups(posing, [(look.responses, look.effects) for look in looks])

@@ -37,7 +37,7 @@ class PosedChannels(Protocol):
 
     def errors(
         self, values: list[FloatArray]
-    ) -> Generator[None, None, tuple[FloatArray, FloatArray]]:
+    ) -> Generator[float | None, None, tuple[FloatArray, FloatArray]]:
         """Distances (T, B) m of the bones' heads from where they should be, and angles (T, B) rad,
         with other values (T, n) of the channels; in slices."""
 
@@ -59,7 +59,7 @@ def chosen_keys(
     events: KeyEvents,
     taken: dict[str, FloatArray],
     rate: float,
-) -> Generator[None, None, ChosenKeys]:
+) -> Generator[float | None, None, ChosenKeys]:
     """Keys for bones whose channels are known at every frame, in slices of some 20 ms.
 
     taken: frames of the take's own keys by bone, within the range. rate: frames a second.
@@ -71,7 +71,7 @@ def chosen_keys(
             keys = _as_taken(posed, taken)
         case KeyChoice.REDUCED:
             keys = yield from _within(posed, options, events)
-    yield
+    yield None
     done = KeyChoice.EVERY_FRAME if keys is None else options.on
     report = yield from _report(posed, done, keys, rate)
     return ChosenKeys(keys, report)
@@ -79,13 +79,13 @@ def chosen_keys(
 
 def _within(
     posed: PosedChannels, error: KeyOptions, events: KeyEvents
-) -> Generator[None, None, list[BezierKeys] | None]:
+) -> Generator[float | None, None, list[BezierKeys] | None]:
     """The fewest keys that keep an error."""
     asked = _times(error, SAFETY)
     for _ in range(TIGHTENINGS):
         keys = yield from reduced(posed.keyed_figure(events, asked))
         apart, turned = yield from posed.errors([own.at(posed.frames) for own in keys])
-        yield
+        yield None
         beyond = max(apart.max() / error.distance, turned.max() / error.angle)
         if beyond <= 1.0:
             return keys
@@ -113,7 +113,7 @@ def _as_taken(posed: PosedChannels, taken: dict[str, FloatArray]) -> list[Bezier
 
 def _report(
     posed: PosedChannels, choice: KeyChoice, keys: list[BezierKeys] | None, rate: float
-) -> Generator[None, None, KeysReport]:
+) -> Generator[float | None, None, KeysReport]:
     channels = [own.values.shape[1] for own in posed.channels]
     if keys is None:
         values, counts = [own.values for own in posed.channels], [len(posed.frames)] * len(channels)

@@ -65,7 +65,7 @@ class PosedBones:
         """Distances (T, B) m of the heads of bones with channels from where they should be, and
         angles (T, B) rad, with other values (T, n) by bone."""
         should, are = self.matrices(), self.matrices(values)
-        yield
+        yield None
         apart = [self.heads(are[n]) - self.heads(should[n]) for n in self.bones]
         turned = [proper(each[n][:, :3, :3]) for n in self.bones for each in (are, should)]
         return (

@@ -171,7 +171,7 @@ def _write_bodies(
         _write(curves, channel.path, channel.bone, frames, values, goes_on=False)
     for bone in loop.track.bones:
         _write_rotation(curves, bones[bone], frames, bases[bone])
-        yield
+        yield None
     carrier = carrier_of(armature_data(armature).bones[loop.track.bones[0]]).name
     places, goes_on = bases[carrier][:, :3, 3], loop.travels and loop.root is None
     path = bones[carrier].path_from_id("location")
@@ -203,7 +203,7 @@ def _write_controls(
             values = np.concatenate([values[:-1], values[:1]])
             values += np.linspace(0.0, 1.0, len(frames))[:, None] * travel[channel.bone]
         _write(curves, channel.path, channel.bone, frames, values, goes_on=goes_on)
-        yield
+        yield None
 
 
 def _kept(rig: ControlRig, action: bpy.types.Action, loop: Loop) -> Incremental[KeptByControls]:

@@ -77,7 +77,7 @@ def write_take(
         if later is None:
             later = yield from sample_incrementally(armature, plan.rest_frames, showing)
     body, rest = _tracks(poses, later, plan, motion, carrying)
-    yield
+    yield None
     held: dict[OwnedChannel, FloatArray] = {}
     if rig is None:
         recording = partial(showing_action, armature, take)
@@ -100,7 +100,7 @@ def write_take(
         bases |= {c.bone: np.concatenate([bases[c.bone], more[c.bone]]) for c in owned if c.carries}
     for channel in rests:
         _write_channel(armature, curves, channel, rests[channel], bases[channel.bone], plan)
-        yield
+        yield None
     if motion.ends:
         for curve in all_curves(action):
             fcurves.crop(curve, min(plan.span.begin, plan.span.first), plan.span.last)
@@ -141,7 +141,7 @@ def _retime(
         if not alone or curve.data_path in mine:
             retime(curve, time)
         if count % _RETIMED_A_SLICE == 0:
-            yield
+            yield None
     if alone:
         return
     for marker in action.pose_markers:

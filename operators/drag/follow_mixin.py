@@ -188,7 +188,7 @@ class FollowedDrag(PolledOperator):
             except StopIteration as end:
                 if end.value is not None:  # surfaces may be elsewhere than they were
                     asked, self._moved = end.value, True
-            yield
+            yield None
 
     def _may_read(self) -> bool:
         """At a timer's event, for at each of the mouse's moves a reading would lag: whether no new

@@ -264,7 +264,7 @@ def _snapped(settings: HangtimeSettings, asked: tuple[float, float]) -> str:
 
 def _analysed(
     armature: bpy.types.Object, recording: Recording, problem: MotionProblem
-) -> Generator[PendingRequest | None, None, Analysed]:
+) -> Generator[PendingRequest | float | None, None, Analysed]:
     """The analysis; in the scene where without it something unseen carries the body, or a floor
     that moves.
 

@@ -1,6 +1,6 @@
 """Writes an answer of the solver as a result: an action, its strip or slot, marks and report."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from math import isclose
 
@@ -273,7 +273,7 @@ def _note(
         action_settings(action).performer = performer
 
 
-def _unchanged(asked: Asked) -> Generator[None, None, bpy.types.Object]:
+def _unchanged(asked: Asked) -> Incremental[bpy.types.Object]:
     """The armature, if it and its recording are what they were. Raises RateChanged,
     ChangedMeanwhile."""
     before, rate = asked.recording.rate, frames_per_second(current_scene())
