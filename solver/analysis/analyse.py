@@ -46,6 +46,7 @@ from .take import take_of
 
 ROUNDING = 1e-6  # of a frame's time
 MOST = 2.0 / 3.0  # of the time in the air, in which the body falls at another rate than the scene's
+LEANING_SHARE = 0.2  # of a gap, in which hands or knees on the floor may be what carries the body
 MAX_FRAME_TIME = 0.125  # s: the flight of a small hop, a quarter second, has two frames then
 
 
@@ -151,8 +152,10 @@ def _fitting_rate(performance: Performance, gap: Interval, floor_m: float) -> in
 
 
 def _leans(performance: Performance, gap: Interval, floor_m: float) -> bool:
-    """Whether another part of the body than a foot is on the floor in a gap, and may carry it."""
-    return bool(leans(performance, floor_m)[_inside(performance, gap)].any())
+    """Whether another part of the body than a foot is on the floor in a good part of a gap, and may
+    carry it: a hand that sweeps past the floor for a frame carries nothing."""
+    leaning = leans(performance, floor_m)[_inside(performance, gap)]
+    return bool(leaning.size and leaning.mean() > LEANING_SHARE)
 
 
 def _inside(performance: Performance, gap: Interval) -> BoolArray:
