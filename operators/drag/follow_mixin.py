@@ -13,9 +13,10 @@ from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault
 from ...solver.data.status import DragStatus
 from ...solver.worker.protocol import Answer, Failed, Followed, Progress
+from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
 from ..solve.adapt import ask_for, followed_problem, unanalysed
-from ..solve.common import required_armature, said
+from ..solve.common import failed, required_armature, said
 from ..solve.live import live, redraw_viewports, redraw_views
 from ..solve.session import Asked, session
 from ..words.report_text import deeper, higher
@@ -221,12 +222,15 @@ class FollowedDrag(PolledOperator):
             live().show(self._armature.name, message)
 
     def _look(self) -> None:
-        """A part of the work; what cannot be followed is said, and the drag goes on without."""
+        """A part of the work; what cannot be followed is said, in the panel as Adapt would, and the
+        drag goes on without."""
         try:
             next(self._task)
         except Fault as fault:
             self._fault = said(fault)
+            session().failure = failed(fault, self._armature.session_uid, OperatorId.ADAPT)
             live().clear()
+            redraw_viewports()  # the panel, too
         except StopIteration:
             pass  # after such a fault
 
