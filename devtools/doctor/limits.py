@@ -67,13 +67,7 @@ def fit_figures(fitted: Sequence[FittedClip]) -> list[WorstFigure]:
     failed = [each for each in fitted if not each.valid]
     valid = 100.0 * (1.0 - len(failed) / len(fitted))
     where = "; ".join(f"{each.clip}, {each.damage or 'clean'}" for each in failed)
-    released = [each for each in fitted if each.let_go]
-    holding = 100.0 * (1.0 - len(released) / len(fitted))
-    lost = "; ".join(f"{each.clip}, {each.damage or 'clean'}: {each.let_go}" for each in released)
-    made = [
-        WorstFigure("fits that end with a valid motion", valid, "%", 100.0, 100.0, where, True),
-        WorstFigure("fits that hold all contacts", holding, "%", 90.0, 100.0, lost, True),
-    ]
+    made = [WorstFigure("fits that end with a valid motion", valid, "%", 100.0, 100.0, where, True)]
     noisy = [each for each in fitted if each.valid and each.damage == NOISE]
     grounded = [each for each in fitted if each.valid and each.damage == WITHOUT_FLIGHT]
     if noisy:

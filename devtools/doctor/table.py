@@ -47,7 +47,8 @@ joint centres from the repaired clip that was fitted, *off the original* from th
 the same frames; median and worst over the clips. *Slides*: the furthest that a contact slides while
 it carries. *Let go*: contacts that were found but that the fit does not hold; *carried*: the most
 of a clip in which something unseen carries the body. It tells both, for with these a fit can always
-end. The last row holds the longest parts of the clips, of at most 5 s, in which nothing flies.
+end: {released} of {fits} fits let go of a contact, and in {carried} something carries. The last row
+holds the longest parts of the clips, of at most 5 s, in which nothing flies.
 """
 FITS_COLUMNS = (
     *("damage", "clips", "valid", "off the clip (cm)", "off the original (cm)"),
@@ -113,7 +114,11 @@ def fits_page(fitted: Sequence[FittedClip], found: Sequence[WorstFigure], minute
     lines = [
         FITS_HEAD.format(minutes=max(minutes, 1.0)),
         *figure_table(found),
-        FITS_NOTES,
+        FITS_NOTES.format(
+            fits=len(fitted),
+            released=sum(each.let_go > 0 for each in fitted),
+            carried=sum(each.carried > 0.0 for each in fitted),
+        ),
         f"| {' | '.join(FITS_COLUMNS)} |",
         f"|{'---|' * len(FITS_COLUMNS)}",
         *rows,
