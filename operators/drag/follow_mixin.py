@@ -24,7 +24,6 @@ from .mouse import BACK, CONFIRM, GIVEN, Press
 
 LOST = "no motion follows there; the ghost stays where it last could"
 ELSEWHERE = "Drag in a 3D viewport"
-FEWEST_GHOSTS = 5  # to one that waits for a part of a reading, 20 ms and more
 LOOK_EVERY = 0.01  # s; a look costs little, and the ghost waits for the next one
 # s, at most, for which the first move of the mouse waits for its ghost, which mostly takes a third:
 # Blender draws then, and a ghost that comes later is seen a whole drawing later.
@@ -88,8 +87,7 @@ class FollowedDrag(PolledOperator):
         if why is not None:
             return self.refuse(why)
         self._moved, self._share = True, 0.0
-        self._idle = self._told = self._fresh = False  # Blender; anything by the worker; a ghost
-        self._ghosts = 0  # since anything was read
+        self._idle = self._told = False  # Blender; anything by the worker
         self._fault = self._shown = ""
         self._task = self._follow(context)
         self._area = present(context.area)
@@ -164,14 +162,20 @@ class FollowedDrag(PolledOperator):
     def _follow(self, context: bpy.types.Context) -> Incremental[None]:
         """Has the worker follow what is dragged, from the press on, though a click shows no ghost:
         of recording and scene as they were read last. They are read again, in parts, once it has
-        told anything and while nothing is to be drawn, for no ghost waits for a reading. Raises
-        ChangedMeanwhile where it is another recording, AimedBone.
+        told anything, for the first ghost waits for no reading. Raises ChangedMeanwhile where it is
+        another recording, AimedBone.
         """
         reading, asked = ask_for(context), self._read_before(context)
         if asked is None:
             asked = yield from reading
         stream, waits = shared().follow(asked.recording), True
         while True:
+            try:
+                if self._idle and self._told:  # not at each of the mouse's moves, which would lag
+                    next(reading)
+            except StopIteration as end:
+                if end.value is not None:  # surfaces may be elsewhere than they were
+                    asked, self._moved = end.value, True
             session().dragged = asked
             if self._moved:  # before the news, after which the worker goes on with it
                 self._moved = False
@@ -183,22 +187,7 @@ class FollowedDrag(PolledOperator):
                 waits = False
                 for message in stream.first_news(TOGETHER):
                     self._hear(message)
-            try:
-                if self._idle and self._told and self._may_read():
-                    next(reading)
-            except StopIteration as end:
-                if end.value is not None:  # surfaces may be elsewhere than they were
-                    asked, self._moved = end.value, True
             yield None
-
-    def _may_read(self) -> bool:
-        """At a timer's event, for at each of the mouse's moves a reading would lag: whether no new
-        ghost is to be drawn before, or so many have been that there always is one."""
-        fresh, self._fresh = self._fresh, False
-        if fresh and self._ghosts < FEWEST_GHOSTS:
-            return False
-        self._ghosts = 0
-        return True
 
     def _read_before(self, context: bpy.types.Context) -> Asked | None:
         """What was read last, where it was of this armature, its analysis and these surfaces."""
@@ -217,7 +206,6 @@ class FollowedDrag(PolledOperator):
             self._fault = said(message.fault)
             live().clear()
         elif isinstance(message, Followed):
-            self._fresh, self._ghosts = True, self._ghosts + 1
             self._fault = LOST if message.status is DragStatus.DIVERGED else ""
             live().show(self._armature.name, message)
 

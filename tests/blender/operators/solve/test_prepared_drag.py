@@ -15,7 +15,7 @@ from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.bridge.worker_client import shared
 from hangtime.operators.drag import follow_mixin
-from hangtime.operators.drag.follow_mixin import FEWEST_GHOSTS, FollowedDrag
+from hangtime.operators.drag.follow_mixin import FollowedDrag
 from hangtime.operators.drag.mouse import Press
 from hangtime.operators.solve.analyze import _prepare_drag
 from hangtime.operators.solve.session import session
@@ -64,7 +64,6 @@ class Drag(FollowedDrag):
 
     held = "Left toe 2"
     _moved = _idle = _told = True
-    _fresh, _ghosts = False, 0
 
     def __init__(self, armature: bpy.types.Object) -> None:
         self._armature = armature
@@ -115,21 +114,6 @@ def test_the_first_ghost_waits_for_no_reading(
     drag._idle = True
     next(following)
     assert read == [0]
-
-
-@pytest.mark.usefixtures("asked")
-def test_a_ghost_is_drawn_before_more_is_read(analysed, monkeypatch: pytest.MonkeyPatch) -> None:
-    complete(_prepare_drag(bpy.context))
-    read: list[int] = []
-    monkeypatch.setattr(follow_mixin, "ask_for", lambda _: (read.append(part) for part in count()))
-    drag = Drag(analysed)
-    following, read_at = drag._follow(bpy.context), []
-    for fresh, ghosts in ((False, 0), (True, 1), (False, 1), (True, FEWEST_GHOSTS)):
-        drag._fresh, drag._ghosts = fresh, ghosts
-        next(following)
-        read_at.append(len(read))
-    assert read_at == [1, 1, 2, 3]
-    assert (drag._fresh, drag._ghosts) == (False, 0)
 
 
 def test_what_adapt_will_refuse_is_no_fault_of_the_analysis(analysed, asked: Asked) -> None:
