@@ -66,7 +66,11 @@ def fits(
     for damage in damages:
         damaged = damage.of(part)
         yield fitted(name, damage.name, damaged.recording, damaged.original)
-    grounded = without_flight(whole)
+    try:
+        grounded = without_flight(whole)
+    except Fault as fault:
+        yield FittedClip(name, WITHOUT_FLIGHT, False, sentence(fault))
+        return
     if grounded is not None:
         yield fitted(name, WITHOUT_FLIGHT, grounded, grounded)
 

@@ -177,7 +177,8 @@ def _level_rise(contact: Contact, contacts: Sequence[Contact]) -> tuple[float, f
 
 
 def _height_at(time: float, contact: Contact) -> float:
-    """M, of a contact's point above its place; infinite where it does not touch."""
+    """M, of a contact's point above its place, where within it has sunk, which takes moments;
+    infinite where it does not touch."""
     if not contact.start <= time <= contact.end:
         return np.inf
     if time == contact.start:

@@ -87,14 +87,9 @@ def _off(found: Fit) -> float:
 
 def _doubted(found: Fit) -> tuple[Interval, ...]:
     """Where a fit far from its recording may lack what carried the body."""
-    return (
-        ()
-        if _off(found) < FAR
-        else (
-            *_never_flown(found),
-            *leaning(found.performance, found.schedule),
-        )
-    )
+    if _off(found) < FAR:
+        return ()
+    return (*_never_flown(found), *leaning(found.performance, found.schedule))
 
 
 def _never_flown(found: Fit) -> tuple[Interval, ...]:
