@@ -174,7 +174,7 @@ def test_a_jump_that_its_own_durations_take_through_a_ceiling_keeps_the_recorded
     found = adapt(
         fitted_hop(),
         MotionProblem(
-            pins=(Pin("Landing", "ground 2", offset=(0.4, 0.0, 0.0)),), scene=(ceiling(1.08),)
+            pins=(Pin("Landing", "ground 2", offset=(0.4, 0.0, 0.0)),), scene=(ceiling(1.06),)
         ),
     )
     assert found.solved
