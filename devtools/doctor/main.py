@@ -70,7 +70,8 @@ def fits_table(chosen: Iterable[tuple[str, Recording]], out: Path, *, write_page
     began = time.perf_counter()
     fitted: list[FittedClip] = []
     for name, recording in chosen:
-        mine = list(fits(name, first_part(name, recording), recording, one_of_each_kind()))
+        whole = without_own_faults(name, recording)
+        mine = list(fits(name, first_part(name, recording), whole, one_of_each_kind()))
         failed = ", ".join(each.damage for each in mine if not each.valid) or "nothing"
         print(f"{name}: not fitted {failed}", flush=True)
         fitted += mine

@@ -33,7 +33,7 @@ from ..scene.belt import belt_speed
 from ..scene.fall_rate import fitting_rate
 from ..scene.support import boxes_beneath
 from .contact_detection import unseen_support
-from .grounding import disjoint, foot_sized, grounded, parted
+from .grounding import disjoint, foot_sized, grounded, parted, rigid
 from .performance import (
     Performance,
     contact_points,
@@ -78,7 +78,7 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     found = replace(found, contacts=numbered(found.contacts))
     corrected = disjoint(_corrected(found, problem, performance))
     standing = foot_sized(corrected, performance, problem.scene)
-    schedule = grounded(standing, performance, problem.scene)
+    schedule = rigid(grounded(standing, performance, problem.scene))
     known = performance.take
     unseen = unseen_support(schedule.contacts, schedule.duration, known.times, known.com)
     schedule = replace(schedule, unseen=unseen)

@@ -6,7 +6,7 @@ sole gives, and as the recording shows it. A foot that slides is at one place an
 in between it is not loaded.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
 
@@ -17,6 +17,7 @@ from ..data.contacts import Contact, ContactSchedule
 from ..data.scene import SceneObject
 from ..numerics.interpolation import interpolate
 from ..scene.support import StandingGround
+from .contact_detection import MAX_SLIDE
 from .performance import Performance
 
 NEAR_FLOOR = 0.04  # m; a place further away is on something else
@@ -30,37 +31,72 @@ MIN_STEP_TIME = 0.06  # s
 MAX_FOOT_CHANGE = 0.02  # m; by as much a foot's heel and toe come nearer as it bends and rolls
 MIN_OVERLAP = 0.01  # s; in which heel and toe stand together
 OVERLAP_SAMPLES = 9
-# m, by which heel and toe of a foot without toes are unlike in height as one of them sinks or
-# rises: tilted by 8 mm it is 0.15 mm shorter along the floor, where neither may slide.
+# m, by which a foot without toes may be tilted as one of heel and toe sinks or rises beside the
+# other that stands: by 8 mm it would be 0.15 mm shorter along the floor, where neither may slide.
 MAX_TILT = 0.002
 MAX_STEP_SHARE = 0.3  # of the shorter of two contacts that a step takes from each
+LEAST_CARRYING = 0.1  # s, of the shorter of two contacts between which a foot that carries skids
+RIGID_ROUNDS, RIGID = 100, 1e-6  # of settling places, and m by which they then may differ
 
 
 def parted(schedule: ContactSchedule) -> ContactSchedule:
     """The schedule with time for each foot to step between places that follow each other.
 
-    Places nearer than SAME_PLACE are one, and the times stay: nothing has to step. Nor does a foot
-    where nothing else would carry the body meanwhile.
+    Places nearer than SAME_PLACE are one, and the times stay: nothing has to step. Where nothing
+    else would carry the body meanwhile, so are those that are no further apart than a foot that
+    stands may slide, and one that stands for moments is at the other's; else the foot skids, and
+    something unseen carries.
     """
     found = schedule
     for i, before in enumerate(schedule.contacts):
         for j, after in enumerate(schedule.contacts):
-            gap = after.start - before.end
-            if after.point != before.point or i == j or not -1e-9 < gap < MIN_STEP_TIME:
-                continue
-            contacts = list(found.contacts)
-            apart = float(np.linalg.norm(after.place - before.place))
-            if apart <= SAME_PLACE:
-                contacts[j] = replace(contacts[j], place=contacts[i].place)
-            else:
-                shorter = min(before.end - before.start, after.end - after.start)
-                needed = max(MIN_STEP_TIME, apart / MAX_STEP_SPEED)
-                each = min(0.5 * (needed - gap), MAX_STEP_SHARE * shorter)
-                contacts[i] = replace(contacts[i], end=before.end - each)
-                contacts[j] = replace(contacts[j], start=after.start + each)
-            stepping = replace(found, contacts=tuple(contacts))
-            found = stepping if stepping.phases == schedule.phases else found
+            meet = -1e-9 < after.start - before.end < MIN_STEP_TIME
+            if after.point == before.point and i != j and meet:
+                found = _stepping(found, i, j)
     return found
+
+
+def _stepping(schedule: ContactSchedule, i: int, j: int) -> ContactSchedule:
+    """The schedule with time, or one place, for a point that is at contact i and then at j."""
+    before, after = schedule.contacts[i], schedule.contacts[j]
+    apart = float(np.linalg.norm(after.place - before.place))
+    if apart <= SAME_PLACE:
+        return _changed(schedule, {j: replace(after, place=before.place)})
+    needed = max(MIN_STEP_TIME, apart / MAX_STEP_SPEED)
+    for share in (0.5, 0.0, 1.0):
+        stepping = _apart_by(schedule, i, j, needed, share)
+        if stepping.phases == schedule.phases:
+            return stepping
+    if after.start - before.end > 1e-9:
+        return schedule  # it flies already
+    lasts = np.array([before.end - before.start, after.end - after.start])
+    if apart > MAX_SLIDE and lasts.min() >= LEAST_CARRYING:
+        return _apart_by(schedule, i, j, needed)
+    weights = lasts if apart <= MAX_SLIDE else lasts == lasts.max()
+    place = np.average([before.place, after.place], axis=0, weights=weights)
+    return _changed(schedule, {i: replace(before, place=place), j: replace(after, place=place)})
+
+
+def _apart_by(
+    schedule: ContactSchedule, i: int, j: int, needed: float, share: float = 0.5
+) -> ContactSchedule:
+    """The schedule with `needed` s between contacts i and j, or what they can give.
+
+    share: of that time from contact i, the rest from j.
+    """
+    before, after = schedule.contacts[i], schedule.contacts[j]
+    shorter = min(before.end - before.start, after.end - after.start)
+    missing = min(needed - (after.start - before.end), 2.0 * MAX_STEP_SHARE * shorter)
+    ends = {
+        i: replace(before, end=before.end - share * missing),
+        j: replace(after, start=after.start + (1.0 - share) * missing),
+    }
+    return _changed(schedule, ends)
+
+
+def _changed(schedule: ContactSchedule, changed: Mapping[int, Contact]) -> ContactSchedule:
+    contacts = tuple(changed.get(k, c) for k, c in enumerate(schedule.contacts))
+    return replace(schedule, contacts=contacts)
 
 
 def disjoint(schedule: ContactSchedule) -> ContactSchedule:
@@ -167,20 +203,61 @@ def _grounded(
 
 
 def _level_rise(contact: Contact, contacts: Sequence[Contact]) -> tuple[float, float]:
-    """A contact's rise, no further from that of what stands on the same bone than it may tilt."""
+    """A contact's rise, no further from that of what stands on the same bone than it may tilt, and
+    the same where both land or leave."""
     first, last = contact.rise
     for other in contacts:
         if other.bone == contact.bone and other.point != contact.point:
-            first = min(first, _height_at(contact.start, other) + MAX_TILT)
-            last = min(last, _height_at(contact.end, other) + MAX_TILT)
+            first = min(first, _height_at(contact.start, other))
+            last = min(last, _height_at(contact.end, other))
     return first, last
 
 
 def _height_at(time: float, contact: Contact) -> float:
-    """M, of a contact's point above its place, where within it has sunk, which takes moments;
-    infinite where it does not touch."""
+    """M, above its place, to which a contact's point lets another of its bone rise; infinite where
+    it does not touch."""
     if not contact.start <= time <= contact.end:
         return np.inf
     if time == contact.start:
         return contact.rise[0]
-    return contact.rise[1] if time == contact.end else 0.0
+    return contact.rise[1] if time == contact.end else MAX_TILT
+
+
+def rigid(schedule: ContactSchedule) -> ContactSchedule:
+    """The schedule with places that one bone holds at one instant as far apart along the floor as
+    its points are, and those of one point one place.
+
+    Heel and toe of a foot without toes are such points, found at different moments of its turning.
+    Each pair is settled in turn, and both give way by how short they stand (Gauss-Seidel).
+    """
+    contacts = schedule.contacts
+    held = [
+        (i, j, _level_distance(a, b))
+        for (i, a), (j, b) in combinations(enumerate(contacts), 2)
+        if a.bone == b.bone
+        and a.on is b.on is None
+        and min(a.end, b.end) - max(a.start, b.start) > -1e-9
+    ]
+    places = np.array([c.place for c in contacts])
+    yields = [1.0 / (c.end - c.start) for c in contacts]
+    for _ in range(RIGID_ROUNDS):
+        worst = 0.0
+        for i, j, distance in held:
+            between = (places[j] - places[i])[:2]
+            off = (norm := float(np.linalg.norm(between))) - distance
+            if norm > 0.0:
+                step = off / norm * between / (yields[i] + yields[j])
+                places[i, :2] += yields[i] * step
+                places[j, :2] -= yields[j] * step
+            worst = max(worst, abs(off))
+        if worst < RIGID:
+            break
+    moved = zip(contacts, places, strict=True)
+    return replace(schedule, contacts=tuple(replace(c, place=place) for c, place in moved))
+
+
+def _level_distance(one: Contact, other: Contact) -> float:
+    """M, along the floor, between points of one bone at the heights of their places."""
+    apart = float(np.linalg.norm(one.offset - other.offset))
+    up = float(one.place[2] - other.place[2])
+    return float(np.sqrt(max(apart**2 - up**2, 0.0)))

@@ -15,6 +15,7 @@ from hangtime.solver.analysis.grounding import (
     foot_sized,
     grounded,
     parted,
+    rigid,
 )
 from hangtime.solver.analysis.performance import find_contacts
 from hangtime.solver.data.contacts import Contact, ContactSchedule, numbered
@@ -131,23 +132,39 @@ def test_a_foot_that_stays_keeps_its_times_and_stands_on_one_place() -> None:
     assert second.place == pytest.approx(first.place)
 
 
-def test_a_step_never_takes_the_ground_from_the_body() -> None:
-    alone, _ = cut(replace(found(), contacts=found().contacts[:1]), 0.08)
-    assert parted(alone) is alone
+def test_a_foot_that_carries_alone_and_moves_little_stands_on_one_place() -> None:
+    """At both, it would contradict itself at the instant between."""
+    alone, whole = cut(replace(found(), contacts=found().contacts[:1]), 0.04)
+    first, second = halves_of(whole, parted(alone))
+    assert first.end == second.start
+    assert first.place - whole.place == pytest.approx([0.02, 0.0, 0.0])
+    assert second.place == pytest.approx(first.place)
 
 
-def test_a_foot_that_cannot_step_keeps_no_other_from_it() -> None:
-    schedule, whole = cut(found(), 0.08)
-    late = schedule.duration + 1.0
-    halves = [
-        replace(c, start=c.start + late, end=c.end + late) for c in halves_of(whole, schedule)
-    ]
-    longer = replace(
-        schedule, contacts=(*schedule.contacts, *halves), duration=schedule.duration + late
-    )
-    first, second = halves_of(whole, parted(longer))
-    assert second.start - first.end >= MIN_STEP_TIME
-    assert parted(longer).contacts[-2:] == longer.contacts[-2:]
+def test_a_foot_that_carries_alone_and_goes_far_is_without_load_meanwhile() -> None:
+    alone, whole = cut(replace(found(), contacts=found().contacts[:1]), 0.08)
+    first, second = halves_of(whole, parted(alone))
+    assert second.start - first.end == pytest.approx(0.08)
+    assert second.place - first.place == pytest.approx([0.08, 0.0, 0.0])
+
+
+def test_who_stands_for_moments_before_a_skid_lands_where_it_ends() -> None:
+    alone, whole = cut(replace(found(), contacts=found().contacts[:1]), 0.08)
+    brief, longer = halves_of(whole, alone)
+    landing = replace(brief, start=brief.end - 0.05)
+    first, second = parted(replace(alone, contacts=(landing, longer))).contacts
+    assert (first.start, first.end) == (landing.start, second.start)
+    assert first.place == pytest.approx(longer.place)
+
+
+def test_a_step_is_made_when_something_else_carries() -> None:
+    """The other foot stands from the middle on, so the step is all after it."""
+    alone, whole = cut(replace(found(), contacts=found().contacts[:1]), 0.08)
+    first, second = halves_of(whole, alone)
+    other = replace(second, name="Right toe 1", point="Right toe", place=whole.place + 0.3)
+    before, after = halves_of(whole, parted(replace(alone, contacts=(first, second, other))))
+    assert before.end == first.end
+    assert after.start - before.end == pytest.approx(0.08)
 
 
 def test_the_artist_s_times_are_not_shifted() -> None:
@@ -214,3 +231,19 @@ def test_places_of_a_foot_that_stands_still_stay() -> None:
     standing = found()
     kept = foot_sized(standing, hop().performance).contacts
     assert all(a.place is b.place for a, b in zip(kept, standing.contacts, strict=True))
+
+
+def test_points_of_one_bone_keep_their_distance() -> None:
+    """A foot without toes turns about its heel: two places of the toe, each of another moment."""
+    base = found().contacts[0]
+    offset = base.offset + np.array([0.0, 0.2, 0.0])
+    heel = replace(base, start=0.0, end=0.9)
+    ahead, aside = np.array([0.19, 0.0, 0.0]), np.array([0.0, 0.22, 0.003])
+    first = replace(base, point="Toe", offset=offset, start=0.0, end=0.3, place=base.place + ahead)
+    second = replace(first, start=0.5, end=1.0, place=base.place + aside)
+    settled = rigid(replace(found(), contacts=(heel, first, second))).contacts
+    for toe in settled[1:]:
+        assert np.linalg.norm(toe.place - settled[0].place) == pytest.approx(0.2, abs=1e-5)
+    assert [c.place[2] for c in settled] == [c.place[2] for c in (heel, first, second)]
+    stays, goes = rigid(replace(found(), contacts=(heel, first))).contacts
+    assert goes.place[0] - first.place[0] == pytest.approx(3.0 * (heel.place[0] - stays.place[0]))

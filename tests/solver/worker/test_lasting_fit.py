@@ -202,6 +202,21 @@ def test_a_figure_without_toes_keeps_its_contacts() -> None:
     assert not fitted.let_go
 
 
+def test_a_skid_of_both_feet_leaves_no_contradiction_behind() -> None:
+    """They are at one place and then, at once, at another."""
+    recording = load_recording(HOP_CLIP).window(*frames_of(HOP_CLIP, HOP))
+    last = hop().schedule.phases[-1]
+    share = np.clip((recording.times - last.start - 0.2) / 0.1, 0.0, 1.0)
+    heads = recording.heads.copy()
+    heads[..., 0] += 0.08 * share[:, None]
+    fitted = fit_subject(measure(replace(recording, heads=heads), MotionProblem()), StageClock())
+    assert fitted.solved
+    assert not fitted.let_go
+    (unseen,) = fitted.schedule.unseen
+    assert last.start < unseen.start < unseen.end < unseen.start + 0.1
+    assert len(fitted.schedule.flights) == len(hop().schedule.flights)
+
+
 @pytest.mark.slow
 def test_a_contact_that_contradicts_the_others_is_let_go_and_told() -> None:
     """One point of a standing foot is said to be further off than the foot can turn."""
