@@ -82,7 +82,7 @@ def _variant(fault: Fault) -> int:
         case faults.JoinedPhase():
             return bool(fault.kept)
         case faults.UnseenSupport():
-            more = bool(fault.boxes), fault.rate is not None, fault.exchanged
+            more = bool(fault.boxes), fault.rate is not None, fault.exchanged, fault.skidding
             return max(i for i, each in enumerate((True, *more)) if each)
         case faults.UnknownObject():
             return bool(fault.known)

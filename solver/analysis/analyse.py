@@ -9,7 +9,7 @@ track = adaptation.motion.track(analysis.performance.recording)
 """
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -33,7 +33,7 @@ from ..scene.belt import belt_speed
 from ..scene.fall_rate import fitting_rate
 from ..scene.support import boxes_beneath
 from .contact_detection import unseen_support
-from .grounding import disjoint, foot_sized, grounded, parted, rigid
+from .grounding import disjoint, foot_sized, grounded, parted
 from .performance import (
     Performance,
     contact_points,
@@ -74,15 +74,17 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     within, character = build_figure(recording, problem)
     performance = _performed(recording, within, character, problem.skin)
     # Before corrections, which are the last word, and name contacts as they are told.
-    found = disjoint(parted(find_contacts(performance, problem.scene)))
+    touching = find_contacts(performance, problem.scene)
+    found = disjoint(parted(touching))
+    skids = [each for each in found.unseen if each not in touching.unseen]
     found = replace(found, contacts=numbered(found.contacts))
     corrected = disjoint(_corrected(found, problem, performance))
     standing = foot_sized(corrected, performance, problem.scene)
-    schedule = rigid(grounded(standing, performance, problem.scene))
+    schedule = grounded(standing, performance, problem.scene)
     known = performance.take
-    unseen = unseen_support(schedule.contacts, schedule.duration, known.times, known.com)
+    unseen = unseen_support(schedule.contacts, schedule.duration, known.times, known.com, skids)
     schedule = replace(schedule, unseen=unseen)
-    told = tuple(_told(performance, schedule))
+    told = tuple(_told(performance, schedule, skids))
     if told and problem.unseen is Unseen.REFUSE:
         raise told[0]
     return Analysis(performance, schedule, told)
@@ -112,9 +114,12 @@ def part_of(analysis: Analysis, start: float, end: float) -> Analysis:
 
 
 def _told(
-    performance: Performance, schedule: ContactSchedule
+    performance: Performance, schedule: ContactSchedule, skids: Sequence[Interval]
 ) -> Iterator[UnseenSupport | Treadmill]:
-    """What is known of each interval in which something unseen carries the body."""
+    """What is known of each interval in which something unseen carries the body.
+
+    skids: in which feet go from place to place under load.
+    """
     if not schedule.unseen:
         return
     points, floor_m = contact_points(performance)
@@ -124,11 +129,14 @@ def _told(
     recording = performance.recording
     agreed = agreed_rate(performance, schedule)
     for gap in schedule.unseen:
+        first, last = _frame(recording, gap.start), _frame(recording, gap.end)
+        if any(skid.start <= gap.start and gap.end <= skid.end for skid in skids):
+            yield UnseenSupport(first, last, skidding=True)
+            continue
         rate = agreed if _fitting_rate(performance, gap, floor_m) == agreed else None
         boxes: tuple[SupportBox, ...] = ()
         if rate is None and not _leans(performance, gap, floor_m):
             boxes = boxes_beneath(performance.times, points, gap, floor_m)
-        first, last = _frame(recording, gap.start), _frame(recording, gap.end)
         yield UnseenSupport(first, last, boxes, rate, recording.rate)
 
 

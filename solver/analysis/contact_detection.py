@@ -87,11 +87,21 @@ def detect_contacts(
 
 
 def unseen_support(
-    contacts: Iterable[Contact], duration: float, times: FloatArray, com: FloatArray | None
+    contacts: Iterable[Contact],
+    duration: float,
+    times: FloatArray,
+    com: FloatArray | None,
+    known: Iterable[Interval] = (),
 ) -> tuple[Interval, ...]:
-    """Intervals of [0, duration], s, without a contact in which the body does not fall."""
-    carried = ((c.start, c.end) for c in contacts)
-    return tuple(gap for gap in gaps(carried, duration) if not _may_fall(times, com, gap))
+    """Intervals of [0, duration], s, without a contact in which the body does not fall, or within
+    those that are known to be such."""
+    carried, told = ((c.start, c.end) for c in contacts), tuple(known)
+    return tuple(
+        gap
+        for gap in gaps(carried, duration)
+        if any(each.start <= gap.start and gap.end <= each.end for each in told)
+        or not _may_fall(times, com, gap)
+    )
 
 
 def _touches(

@@ -13,11 +13,10 @@ from itertools import combinations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..data.contacts import Contact, ContactSchedule
+from ..data.contacts import Contact, ContactSchedule, Interval
 from ..data.scene import SceneObject
 from ..numerics.interpolation import interpolate
 from ..scene.support import StandingGround
-from .contact_detection import MAX_SLIDE
 from .performance import Performance
 
 NEAR_FLOOR = 0.04  # m; a place further away is on something else
@@ -34,30 +33,28 @@ OVERLAP_SAMPLES = 9
 # m, by which a foot without toes may be tilted as one of heel and toe sinks or rises beside the
 # other that stands: by 8 mm it would be 0.15 mm shorter along the floor, where neither may slide.
 MAX_TILT = 0.002
-MAX_STEP_SHARE = 0.3  # of the shorter of two contacts that a step takes from each
-LEAST_CARRYING = 0.1  # s, of the shorter of two contacts between which a foot that carries skids
-RIGID_ROUNDS, RIGID = 100, 1e-6  # of settling places, and m by which they then may differ
+MAX_STEP_SHARE = 0.3  # of a contact that a step takes from it
+RIGID_ROUNDS, RIGID = 100, 1e-5  # of settling places, and m by which they then may differ
 
 
 def parted(schedule: ContactSchedule) -> ContactSchedule:
     """The schedule with time for each foot to step between places that follow each other.
 
     Places nearer than SAME_PLACE are one, and the times stay: nothing has to step. Where nothing
-    else would carry the body meanwhile, so are those that are no further apart than a foot that
-    stands may slide, and one that stands for moments is at the other's; else the foot skids, and
-    something unseen carries.
+    else carries the body meanwhile the foot skids, and something unseen carries: phases stay.
     """
     found = schedule
     for i, before in enumerate(schedule.contacts):
         for j, after in enumerate(schedule.contacts):
             meet = -1e-9 < after.start - before.end < MIN_STEP_TIME
-            if after.point == before.point and i != j and meet:
+            alike = (after.point, after.on) == (before.point, before.on)
+            if meet and alike and i != j:
                 found = _stepping(found, i, j)
     return found
 
 
 def _stepping(schedule: ContactSchedule, i: int, j: int) -> ContactSchedule:
-    """The schedule with time, or one place, for a point that is at contact i and then at j."""
+    """The schedule with time for a point to go from contact i to contact j, or with one place."""
     before, after = schedule.contacts[i], schedule.contacts[j]
     apart = float(np.linalg.norm(after.place - before.place))
     if apart <= SAME_PLACE:
@@ -68,13 +65,10 @@ def _stepping(schedule: ContactSchedule, i: int, j: int) -> ContactSchedule:
         if stepping.phases == schedule.phases:
             return stepping
     if after.start - before.end > 1e-9:
-        return schedule  # it flies already
-    lasts = np.array([before.end - before.start, after.end - after.start])
-    if apart > MAX_SLIDE and lasts.min() >= LEAST_CARRYING:
-        return _apart_by(schedule, i, j, needed)
-    weights = lasts if apart <= MAX_SLIDE else lasts == lasts.max()
-    place = np.average([before.place, after.place], axis=0, weights=weights)
-    return _changed(schedule, {i: replace(before, place=place), j: replace(after, place=place)})
+        return schedule  # what is between has been found to be a flight, or to be carried
+    skidding = _apart_by(schedule, i, j, needed)
+    skid = Interval(skidding.contacts[i].end, skidding.contacts[j].start)
+    return replace(skidding, unseen=(*schedule.unseen, skid))
 
 
 def _apart_by(
@@ -85,8 +79,10 @@ def _apart_by(
     share: of that time from contact i, the rest from j.
     """
     before, after = schedule.contacts[i], schedule.contacts[j]
-    shorter = min(before.end - before.start, after.end - after.start)
-    missing = min(needed - (after.start - before.end), 2.0 * MAX_STEP_SHARE * shorter)
+    missing = needed - (after.start - before.end)
+    for part, each in ((share, before), (1.0 - share, after)):
+        if part > 0.0:
+            missing = min(missing, MAX_STEP_SHARE * (each.end - each.start) / part)
     ends = {
         i: replace(before, end=before.end - share * missing),
         j: replace(after, start=after.start + (1.0 - share) * missing),
@@ -175,15 +171,16 @@ def _track(contact: Contact, performance: Performance, ground: StandingGround) -
 def grounded(
     schedule: ContactSchedule, performance: Performance, scene: Sequence[SceneObject] = ()
 ) -> ContactSchedule:
-    """The schedule with its places near the ground put upon it, and each contact's rise; places on
-    ground that moves are where they are when the stance begins.
+    """The schedule with its places near the ground put upon it, those of one bone as far apart as
+    it has them, and each contact's rise; places on ground that moves are where they are when the
+    stance begins.
 
     scene: the objects that contacts may be on.
     """
     ground = StandingGround.of(schedule.floor_m, scene, performance.recording)
     contacts = [_grounded(c, schedule, performance, ground) for c in schedule.contacts]
     level = tuple(replace(c, rise=_level_rise(c, contacts)) for c in contacts)
-    return ground.placed(replace(schedule, contacts=level))
+    return ground.placed(rigid(replace(schedule, contacts=level)))
 
 
 def _grounded(
@@ -216,40 +213,41 @@ def _level_rise(contact: Contact, contacts: Sequence[Contact]) -> tuple[float, f
 def _height_at(time: float, contact: Contact) -> float:
     """M, above its place, to which a contact's point lets another of its bone rise; infinite where
     it does not touch."""
-    if not contact.start <= time <= contact.end:
-        return np.inf
-    if time == contact.start:
-        return contact.rise[0]
-    return contact.rise[1] if time == contact.end else MAX_TILT
+    at_start, at_end = (abs(time - end) < 1e-9 for end in (contact.start, contact.end))
+    if at_start or at_end:
+        return contact.rise[0 if at_start else 1]
+    return MAX_TILT if contact.start < time < contact.end else np.inf
 
 
 def rigid(schedule: ContactSchedule) -> ContactSchedule:
-    """The schedule with places that one bone holds at one instant as far apart along the floor as
-    its points are, and those of one point one place.
+    """The schedule with places of points that one bone holds at one instant as far apart along the
+    floor as they are on the bone.
 
     Heel and toe of a foot without toes are such points, found at different moments of its turning.
-    Each pair is settled in turn, and both give way by how short they stand (Gauss-Seidel).
+    Each pair is settled in turn, and the one that stands for less gives way more (Gauss-Seidel).
     """
     contacts = schedule.contacts
     held = [
-        (i, j, _level_distance(a, b))
+        (i, j, distance)
         for (i, a), (j, b) in combinations(enumerate(contacts), 2)
-        if a.bone == b.bone
-        and a.on is b.on is None
+        if (a.bone, a.on) == (b.bone, b.on)
+        and a.point != b.point
         and min(a.end, b.end) - max(a.start, b.start) > -1e-9
+        and (distance := _level_distance(a, b)) > 0.0
     ]
+    if not held:
+        return schedule
     places = np.array([c.place for c in contacts])
-    yields = [1.0 / (c.end - c.start) for c in contacts]
+    lasts = [c.end - c.start for c in contacts]
     for _ in range(RIGID_ROUNDS):
         worst = 0.0
         for i, j, distance in held:
             between = (places[j] - places[i])[:2]
-            off = (norm := float(np.linalg.norm(between))) - distance
-            if norm > 0.0:
-                step = off / norm * between / (yields[i] + yields[j])
-                places[i, :2] += yields[i] * step
-                places[j, :2] -= yields[j] * step
-            worst = max(worst, abs(off))
+            norm = max(float(np.linalg.norm(between)), RIGID)
+            step = (norm - distance) / norm * between / (lasts[i] + lasts[j])
+            places[i, :2] += lasts[j] * step
+            places[j, :2] -= lasts[i] * step
+            worst = max(worst, abs(norm - distance))
         if worst < RIGID:
             break
     moved = zip(contacts, places, strict=True)
@@ -257,7 +255,8 @@ def rigid(schedule: ContactSchedule) -> ContactSchedule:
 
 
 def _level_distance(one: Contact, other: Contact) -> float:
-    """M, along the floor, between points of one bone at the heights of their places."""
+    """M, along the floor, between points of one bone at the heights of their places; 0 where these
+    differ by more than the points are apart."""
     apart = float(np.linalg.norm(one.offset - other.offset))
     up = float(one.place[2] - other.place[2])
     return float(np.sqrt(max(apart**2 - up**2, 0.0)))

@@ -232,7 +232,8 @@ class UnseenSupport(Fault):
 
     boxes: what would, where feet rest above the floor. rate: frames a second at which the body
     would fall as gravity has it, where the scene's, scene_rate, is another. exchanged: whether the
-    legs are there, so that none of these is meant.
+    legs are there, so that none of these is meant. skidding: whether feet are on the ground, and go
+    from place to place.
     """
 
     first: float
@@ -241,6 +242,7 @@ class UnseenSupport(Fault):
     rate: int | None = None
     scene_rate: float = 0.0
     exchanged: bool = False
+    skidding: bool = False
 
 
 @dataclass

@@ -8,6 +8,8 @@ import pytest
 from hangtime.solver.analysis import analyse as analyse_module
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.grounding import (
+    MAX_STEP_SHARE,
+    MAX_TILT,
     MIN_STEP_TIME,
     SAME_PLACE,
     SOLE_COMPLIANCE,
@@ -18,7 +20,7 @@ from hangtime.solver.analysis.grounding import (
     rigid,
 )
 from hangtime.solver.analysis.performance import find_contacts
-from hangtime.solver.data.contacts import Contact, ContactSchedule, numbered
+from hangtime.solver.data.contacts import Contact, ContactSchedule, Interval, numbered
 from hangtime.solver.data.problem import ContactEdit, MotionProblem
 from hangtime.solver.numerics.rotations import unit
 from hangtime.tests.helpers.clips import load_recording
@@ -132,29 +134,33 @@ def test_a_foot_that_stays_keeps_its_times_and_stands_on_one_place() -> None:
     assert second.place == pytest.approx(first.place)
 
 
-def test_a_foot_that_carries_alone_and_moves_little_stands_on_one_place() -> None:
-    """At both, it would contradict itself at the instant between."""
-    alone, whole = cut(replace(found(), contacts=found().contacts[:1]), 0.04)
-    first, second = halves_of(whole, parted(alone))
-    assert first.end == second.start
-    assert first.place - whole.place == pytest.approx([0.02, 0.0, 0.0])
-    assert second.place == pytest.approx(first.place)
-
-
-def test_a_foot_that_carries_alone_and_goes_far_is_without_load_meanwhile() -> None:
+def test_a_foot_that_carries_alone_skids_while_something_unseen_carries() -> None:
     alone, whole = cut(replace(found(), contacts=found().contacts[:1]), 0.08)
-    first, second = halves_of(whole, parted(alone))
+    skidding = parted(alone)
+    first, second = halves_of(whole, skidding)
     assert second.start - first.end == pytest.approx(0.08)
     assert second.place - first.place == pytest.approx([0.08, 0.0, 0.0])
+    assert skidding.unseen == (*alone.unseen, Interval(first.end, second.start))
+    assert skidding.phases == alone.phases
 
 
-def test_who_stands_for_moments_before_a_skid_lands_where_it_ends() -> None:
+def test_three_places_in_a_row_leave_none_in_two_at_once() -> None:
     alone, whole = cut(replace(found(), contacts=found().contacts[:1]), 0.08)
-    brief, longer = halves_of(whole, alone)
-    landing = replace(brief, start=brief.end - 0.05)
-    first, second = parted(replace(alone, contacts=(landing, longer))).contacts
-    assert (first.start, first.end) == (landing.start, second.start)
-    assert first.place == pytest.approx(longer.place)
+    first, last = halves_of(whole, alone)
+    brief = replace(first, start=first.end - 0.05, place=whole.place - [0.05, 0.0, 0.0])
+    row = (replace(first, end=brief.start), brief, last)
+    for one, other in pairwise(parted(replace(alone, contacts=row)).contacts):
+        assert one.end < other.start
+        assert other.end - other.start >= 0.4 * 0.05
+
+
+def test_what_is_on_another_thing_keeps_its_place() -> None:
+    """Places on ground that moves are told as seen from it."""
+    schedule, whole = cut(found(), 0.08)
+    first, second = halves_of(whole, schedule)
+    onto = replace(second, on="Train")
+    contacts = tuple(onto if c is second else c for c in schedule.contacts)
+    assert halves_of(whole, parted(replace(schedule, contacts=contacts))) == (first, onto)
 
 
 def test_a_step_is_made_when_something_else_carries() -> None:
@@ -164,7 +170,7 @@ def test_a_step_is_made_when_something_else_carries() -> None:
     other = replace(second, name="Right toe 1", point="Right toe", place=whole.place + 0.3)
     before, after = halves_of(whole, parted(replace(alone, contacts=(first, second, other))))
     assert before.end == first.end
-    assert after.start - before.end == pytest.approx(0.08)
+    assert after.start - second.start == pytest.approx(MAX_STEP_SHARE * (second.end - second.start))
 
 
 def test_the_artist_s_times_are_not_shifted() -> None:
@@ -247,3 +253,16 @@ def test_points_of_one_bone_keep_their_distance() -> None:
     assert [c.place[2] for c in settled] == [c.place[2] for c in (heel, first, second)]
     stays, goes = rigid(replace(found(), contacts=(heel, first))).contacts
     assert goes.place[0] - first.place[0] == pytest.approx(3.0 * (heel.place[0] - stays.place[0]))
+
+
+def test_a_foot_without_toes_lands_level_and_tilts_little_beside_what_stands() -> None:
+    landing = next(c for c in found().contacts if c.start > 0.0)
+    (free,) = grounded(replace(found(), contacts=(landing,)), hop().performance).contacts
+    assert free.rise[0] > MAX_TILT
+    offset = landing.offset + np.array([0.0, 0.1, 0.0])
+    ahead = replace(landing, point="Ahead", offset=offset)
+    for later, most in ((1e-12, SOLE_COMPLIANCE), (0.01, MAX_TILT)):
+        both = (landing, replace(ahead, start=landing.start + later))
+        first, second = grounded(replace(found(), contacts=both), hop().performance).contacts
+        assert 0.0 <= second.rise[0] <= most
+        assert first.rise[0] == second.rise[0] or later > 1e-9
