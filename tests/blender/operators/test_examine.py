@@ -153,9 +153,10 @@ def test_frames_that_are_left_out_tell_nothing_of_those_that_stay() -> None:
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
     assert len(dance.hangtime.contacts) > 5
     noted = {row.name: finding_of(row).frames for row in findings(dance.hangtime)}
-    np.testing.assert_allclose(
-        unseen_frames(dance.hangtime), noted["unseen support"], rtol=0.0, atol=0.5
-    )
+    carried = np.array(unseen_frames(dance.hangtime))
+    skid = np.abs(carried[:, 0] - 95.0) < 0.5  # which only Analyze looks for
+    assert skid.sum() == 1
+    np.testing.assert_allclose(carried[~skid], noted["unseen support"], rtol=0.0, atol=0.5)
 
 
 def take_frames_out(armature: bpy.types.Object) -> None:
