@@ -21,7 +21,9 @@ STEPS = 30
 NEAR = 2e-6  # m, beside LEVER times rad: steps that gain less end a frame, as do
 LITTLE = 0.001  # those that gain a smaller share of the error: what is left cannot be met
 STILL = 2e-5  # m, beside LEVER times rad, that a body must be to move by in a step
-SLOW = 0.25  # share of the error that a step may leave before the rig is tried anew
+# Share of the error that a step may leave: steps teach what the rig does as well, each in its own
+# direction, so that it is tried anew only after some in a row that leave more.
+SLOW, SLOW_STEPS = 0.25, 3
 # Of the squares of a dof's effect; Nielsen, Damping Parameter in Marquardt's Method (1999).
 DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1.0
 LESS, MORE = 5.0, 6.0  # by which damping goes down after a gain, and up after none
@@ -33,6 +35,8 @@ MORE_LEFT = 1.5
 # m of error up to which what was tried before is good enough to end by: it is off by the share by
 # which the rig answers otherwise here, some hundredths, of an error that is small itself.
 SLIGHT = 0.002
+HARDLY, IDLE_STEPS = 0.03, 2  # share of it, and steps in a row that gain less, after which it ends
+FAR = 0.1  # m of error at the first guess, above which controls are put beside their bodies
 FULL = 0.05  # of a turn, by which a body that follows in full may miss it
 SIZES = 0.002  # m of error that a doubled size counts: where a limb is straight it does nothing
 
@@ -106,6 +110,21 @@ def _inverted(found: _Look) -> Inverted:
     return Inverted(found.bases, off, turned / LEVER)
 
 
+def _ranks(responses: Responses) -> list[list[int]]:
+    """The controls that can be shifted, in as few groups as come by themselves of which none is
+    moved by a later one nor by its own."""
+    left = sorted({dof.control for dof in responses.dofs if dof.shifts})
+    moves = np.zeros((responses.moved.shape[1],) * 2, dtype=bool)
+    for dof, moved in zip(responses.dofs, responses.moved, strict=True):
+        moves[dof.control] |= moved
+    found = []
+    while left:
+        first = [c for c in left if not moves[left, c].any()] or left[:1]
+        found.append(first)
+        left = [c for c in left if c not in first]
+    return found
+
+
 class Inverse:
     """Solves frames one after the other; each begins with what the one before needed."""
 
@@ -113,6 +132,7 @@ class Inverse:
         self._posing, self._targets = posing, targets
         self._groups = apart(responses)
         self._responses = responses
+        self._ranks = _ranks(responses)
         self._offsets = np.zeros((len(posing.controls), 7))
         self._change = np.zeros_like(self._offsets)  # of the offsets at the last frame
         self._influences = Influences(posing.armature)
@@ -125,14 +145,18 @@ class Inverse:
 
     def solve(self, t: int) -> Inverted:
         """Solve the frame of index t: from what the one before needed, or from that changed once
-        more as it was changed there, whichever is nearer; where that leads nowhere, from others."""
+        more as it was changed there, whichever is nearer, and where both are far off with controls
+        beside their bodies as they were there; where that leads nowhere, from others."""
         self._posing.go_to(float(self._targets.frames[t]))
         animated = self._posing.bases()
         self._try_where_switched(animated)
         ahead = _changed(self._offsets, self._change)
-        looks = [self._look(animated, start, t) for start in (self._offsets, ahead)]
-        nearer = looks[1].size < looks[0].size
-        offsets, best = self._solved(animated, ahead if nearer else self._offsets, t)
+        start, size = self._nearest(animated, [self._offsets, ahead], t)
+        if size > FAR and self._met is not None:
+            every = np.ones(len(self._met.bodies), dtype=bool)
+            beside = self._beside(animated, start, t, every, self._met)
+            start, _ = self._nearest(animated, [start, beside], t)
+        offsets, best = self._solved(animated, start, t)
         enough = _enough(self._left)
         for start in self._other_starts(animated, offsets, best, t):
             if best.size <= enough:
@@ -146,6 +170,14 @@ class Inverse:
         self._offsets = offsets
         self._needed[t] = offsets, best.size
         return _inverted(best)
+
+    def _nearest(
+        self, animated: FloatArray, starts: list[FloatArray], t: int
+    ) -> tuple[FloatArray, float]:
+        """The one of some first guesses that is off by the least, and by how much (m)."""
+        sizes = [self._look(animated, start, t).size for start in starts]
+        best = int(np.argmin(sizes))
+        return starts[best], sizes[best]
 
     def unmet(self) -> list[int]:
         """Indices of the frames that were left with more than the next one, the last one first."""
@@ -195,20 +227,23 @@ class Inverse:
         way its pole is to go, nor, where its end is out of reach, that this is to come nearer."""
         wanted, offsets = self._targets, offsets.copy()
         dofs = self._responses.dofs
-        for control in sorted({dof.control for dof in dofs if dof.shifts}):
-            body = self._led(control)
-            if body is None or not (self._moved(control) & bodies).any():
-                continue
-            posed = self._look(animated, offsets, t).posed
-            frame = posed.frames[control]
-            turn = wanted.rotations[t, body] @ proper(seen.bodies[body, :3, :3]).T
-            arm = seen.controls[control, :3, 3] - seen.bodies[body, :3, 3]
-            there = np.append(wanted.heads[t, body] + turn @ arm, 1.0)
-            place = np.linalg.solve(posed.places[control], there)
-            offsets[control, 3:6] = place[:3] - animated[control, :3, 3]
-            if any(dof.control == control and dof.freedom is Freedom.TURN for dof in dofs):
-                turned = proper(frame[:3, :3]).T @ turn @ proper(seen.controls[control, :3, :3])
-                offsets[control, :3] = rotation_vector(proper(animated[control, :3, :3]).T @ turned)
+        for rank in self._ranks:
+            led = [(c, self._led(c)) for c in rank if (self._moved(c) & bodies).any()]
+            posed = self._look(animated, offsets, t).posed if led else seen
+            for control, body in led:
+                if body is None:
+                    continue
+                frame = posed.frames[control]
+                turn = wanted.rotations[t, body] @ proper(seen.bodies[body, :3, :3]).T
+                arm = seen.controls[control, :3, 3] - seen.bodies[body, :3, 3]
+                there = np.append(wanted.heads[t, body] + turn @ arm, 1.0)
+                place = np.linalg.solve(posed.places[control], there)
+                offsets[control, 3:6] = place[:3] - animated[control, :3, 3]
+                if any(dof.control == control and dof.freedom is Freedom.TURN for dof in dofs):
+                    turned = proper(frame[:3, :3]).T @ turn @ proper(seen.controls[control, :3, :3])
+                    offsets[control, :3] = rotation_vector(
+                        proper(animated[control, :3, :3]).T @ turned
+                    )
         return offsets
 
     def _led(self, control: int) -> int | None:
@@ -249,25 +284,29 @@ class Inverse:
     ) -> tuple[FloatArray, _Look]:
         """Offsets from the animated bases, from a first guess, and what they do."""
         best = self._look(animated, offsets, t)
-        fresh, damping = False, DAMPING
+        fresh, damping, slow, idle = False, DAMPING, 0, 0
         for _ in range(STEPS):
             size = best.size
-            moved, reach = self._stepped(offsets, best, t, damping)
+            moved, step, reach = self._stepped(offsets, best, t, damping)
             if (fresh or size < SLIGHT) and reach < STILL:
                 break
             after = self._look(animated, moved, t)
+            self._responses = self._responses.corrected(best.posed, best.bases, step, after.posed)
             left = after.size
             gained = size - left
             if gained > 0.0:
                 offsets, best = moved, after
             done = gained < max(NEAR, LITTLE * size) if gained > 0.0 else damping > MOST_DAMPING
             slight = best.size < SLIGHT
-            if (fresh or slight) and (done or left < NEAR):
+            idle = idle + 1 if gained < HARDLY * size else 0
+            ended = done or left < NEAR
+            if (fresh and ended) or (slight and (ended or idle >= IDLE_STEPS)):
                 break
-            anew = left > SLOW * size and not slight and (gained > 0.0 or not fresh)
+            slow = slow + 1 if left > SLOW * size else 0
+            anew = (slow >= SLOW_STEPS or done) and not slight and (gained > 0.0 or not fresh)
             damping = max(damping / LESS, LEAST_DAMPING) if gained > 0.0 else MORE * damping
             if anew:
-                self._responses = measured(self._posing, best.bases, self._groups)
+                slow, self._responses = 0, measured(self._posing, best.bases, self._groups)
                 self.tries += len(self._groups)
             fresh = anew or (fresh and gained <= 0.0)
         return offsets, best
@@ -289,8 +328,8 @@ class Inverse:
 
     def _stepped(
         self, offsets: FloatArray, at: _Look, t: int, damping: float
-    ) -> tuple[FloatArray, float]:
-        """Offsets after a damped least-squares step, and how far it moves any body."""
+    ) -> tuple[FloatArray, FloatArray, float]:
+        """Offsets after a damped least-squares step; the step; and how far it moves any body."""
         turns, shifts = self._responses.columns(at.posed, at.bases)
         count = len(turns)
         unit = self._targets.unit[t]
@@ -311,4 +350,5 @@ class Inverse:
         turned = np.linalg.norm(changes[:, :3], axis=1, keepdims=True)
         changes[:, :3] *= np.minimum(1.0, LONGEST / np.maximum(turned, 1e-12))
         changes[:, _SIZE] = np.clip(changes[:, _SIZE], -MOST, MOST)
-        return _changed(offsets, changes), float(np.abs(step @ rows).max())
+        taken = [changes[d.control, _COLUMN[d.freedom] + d.axis] for d in self._responses.dofs]
+        return _changed(offsets, changes), np.array(taken), float(np.abs(step @ rows).max())

@@ -95,6 +95,26 @@ class Responses:
         turns = self.turns @ to_axes
         return turns, self.shifts @ to_axes + _rigid(self.dofs, turns, posed)
 
+    def corrected(
+        self, before: Posed, bases: FloatArray, step: FloatArray, after: Posed
+    ) -> Responses:
+        """Such that a step (D,) from pose bases (C, 4, 4) does what it was seen to do, by the
+        least change of what follows (Schubert, Modification of a Quasi-Newton Method for Nonlinear
+        Equations with a Sparse Jacobian, 1970)."""
+        turns, shifts = self.columns(before, bases)
+        turned = rotation_vector(_turned(before.bodies, after.bodies))
+        apart = after.bodies[:, :3, 3] - before.bodies[:, :3, 3]
+        own = step[:, None] * self.follow
+        squares = (own**2).sum(0)
+        share = (own / np.where(squares > 0.0, squares, 1.0))[..., None]
+        turns_more = share * (turned - np.tensordot(step, turns, 1))
+        shifts_more = share * (apart - np.tensordot(step, shifts, 1))
+        shifts_more -= _rigid(self.dofs, turns_more, before)
+        axes = axes_of(self.dofs, before, bases)
+        return replace(
+            self, turns=self.turns + turns_more @ axes, shifts=self.shifts + shifts_more @ axes
+        )
+
     def part(self, chosen: Sequence[int], controls: Sequence[int]) -> Responses:
         """Those of some dofs, which are of some controls; among these alone."""
         rows, kept = list(chosen), list(controls)

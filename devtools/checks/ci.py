@@ -25,11 +25,6 @@ CORES = 2
 RECALLED = 25  # last lines of a check that failed, told once more at the end
 # Recordings that may not be redistributed; the trial held here is among them.
 TRIALS = ROOT.parent / "shared" / "validation"
-# Of all its time the most goes into posing a generated rig's limbs for it; once is enough.
-POSED_FOR_MINUTES = (
-    "tests/blender/takes/test_control_rig.py"
-    "::test_feet_and_hands_in_inverse_kinematics_stay_so_and_stand_still_in_their_keys"
-)
 
 
 @dataclass(frozen=True)
@@ -70,7 +65,7 @@ def shared_checks() -> Iterator[Check]:
         yield Check(f"slow tests, {name}", (tests("4.5", f"slow-{name}", f"{chosen} -m slow"),))
     # The slow ones in 4.5, and in the newest, which is the least like the others.
     if runs("5.2"):
-        yield suite("5.2", f"tests/blender tests/installed --deselect={POSED_FOR_MINUTES}")
+        yield suite("5.2", "tests/blender tests/installed")
     # In several processes: late in one that has done all of it 4.2 ends with a segmentation fault,
     # in its glTF add-on.
     operators, quick = "tests/blender/operators", "-m 'not slow'"

@@ -26,7 +26,8 @@ from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.write_result import write_result
 from hangtime.devtools.rigs.controls.cases import performer as jumper
-from hangtime.devtools.rigs.generated import SWITCH, generated_human, perform
+from hangtime.devtools.rigs.controls.rigify import rigify_human
+from hangtime.devtools.rigs.generated import SWITCH, generated_human
 from hangtime.solver.body.anatomy import map_anatomy
 from hangtime.solver.data.recording import PoseTrack, Recording
 from hangtime.solver.data.reports.jumps import TimeMap
@@ -43,12 +44,9 @@ FLAT = {"Left heel 1", "Right heel 1", "Left heel 2"}  # as long as these stand,
 pytestmark = pytest.mark.usefixtures("_enabled")
 
 
-def performing(arms: float, legs: float) -> bpy.types.Object:
-    """The generated rig with the jump on its controls. arms, legs: 0 for inverse kinematics."""
-    performer = jumper()
-    rig = generated_human(performer, arms=arms, legs=legs)
-    bpy.context.scene.render.fps = 24
-    perform(rig, performer)
+def performing(*, ik: bool) -> bpy.types.Object:
+    """The generated rig with the jump on its controls, of limbs in forward or inverse kinematics"""
+    rig = rigify_human(jumper(), ik=ik, rate=24)
     bpy.context.view_layer.objects.active = rig
     return rig
 
@@ -80,7 +78,7 @@ def misses(status: str) -> tuple[float, float]:
 
 @pytest.mark.slow
 def test_a_generated_rig_lands_further_on_by_keys_on_its_controls() -> None:
-    rig = performing(arms=1.0, legs=1.0)
+    rig = performing(ik=False)
     before = read_recording(rig)
     keyed = land_further(rig)
     after = read_recording(rig)
@@ -98,7 +96,7 @@ def test_a_generated_rig_lands_further_on_by_keys_on_its_controls() -> None:
 
 @pytest.mark.slow
 def test_feet_and_hands_in_inverse_kinematics_stay_so_and_stand_still_in_their_keys() -> None:
-    rig = performing(arms=0.0, legs=0.0)
+    rig = performing(ik=True)
     keyed = land_further(rig)
     assert {"torso", "foot_ik.L", "foot_ik.R", "thigh_ik.L", "toe_ik.L", "hand_ik.R"} <= keyed
     assert not [bone for bone in keyed if "_fk." in bone and "spine" not in bone]
