@@ -1,0 +1,50 @@
+"""What controls do to bodies, measured and corrected; and which a motion needs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.controls.choice import all_responses
+from hangtime.bridge.controls.needed import Effects, needed
+from hangtime.bridge.controls.posing import Posing
+from hangtime.tests.blender.helpers.ik_rig import ik_rig
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+SHIFT = 0.05  # Blender units, far from a small one: the leg bends
+
+
+def test_a_step_corrects_what_it_showed_and_nothing_that_does_not_follow() -> None:
+    rig = ik_rig()
+    posing = Posing(rig, ["hips", "stand.L"], ["thigh.L", "shin.L", "shin.R"])
+    with posing.kept():
+        posing.go_to(1.0)
+        bases, before = posing.bases(), posing.look()
+        found = all_responses(posing, bases)
+        rise = next(d for d, dof in enumerate(found.dofs) if dof.control == 1 and dof.shifts)
+        step = np.eye(len(found.dofs))[rise] * SHIFT
+        posing.pose(1, found.dofs[rise].applied(bases[1], SHIFT))
+        after = posing.look()
+    corrected = found.corrected(before, bases, step, after)
+    seen = after.bodies[:, :3, 3] - before.bodies[:, :3, 3]
+    told, first = (
+        np.tensordot(step, each.columns(before, bases)[1], 1) for each in (corrected, found)
+    )
+    assert np.linalg.norm(first[1] - seen[1]) > 1e-4  # the leg does not bend in proportion
+    np.testing.assert_allclose(told[1], seen[1], atol=1e-6)
+    others = [d for d in range(len(found.dofs)) if d != rise]
+    np.testing.assert_array_equal(corrected.shifts[others], found.shifts[others])
+    np.testing.assert_array_equal(corrected.shifts[~found.follow], 0.0)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-12])
+def test_as_many_dofs_are_kept_as_the_bodies_have(unit: float) -> None:
+    """Of a tiny armature a metre of a control moves bodies by 1e12 m."""
+    random = np.random.default_rng(0)
+    wanted = np.linalg.qr(random.normal(size=(12, 9)))[0].T
+    done = random.normal(size=(40, 9)) @ wanted / unit
+    kept = needed([[dof] for dof in range(40)], [Effects(done, wanted)])
+    assert len(kept) == 9
+    assert np.linalg.matrix_rank(done[kept]) == 9
