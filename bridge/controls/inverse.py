@@ -21,8 +21,8 @@ STEPS = 30
 NEAR = 2e-6  # m, beside LEVER times rad: steps that gain less end a frame, as do
 LITTLE = 0.001  # those that gain a smaller share of the error: what is left cannot be met
 STILL = 2e-5  # m, beside LEVER times rad, that a body must be to move by in a step
-# Share of the error that a step may leave: steps teach what the rig does as well, each in its own
-# direction, so that it is tried anew only after some in a row that leave more.
+# Share of the error that a step may leave, and steps in a row that leave more, after which the rig
+# is tried anew: each step tells what the rig does as well, in its own direction.
 SLOW, SLOW_STEPS = 0.25, 3
 # Of the squares of a dof's effect; Nielsen, Damping Parameter in Marquardt's Method (1999).
 DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1.0
@@ -35,7 +35,7 @@ MORE_LEFT = 1.5
 # m of error up to which what was tried before is good enough to end by: it is off by the share by
 # which the rig answers otherwise here, some hundredths, of an error that is small itself.
 SLIGHT = 0.002
-HARDLY, IDLE_STEPS = 0.03, 2  # share of it, and steps in a row that gain less, after which it ends
+HARDLY, IDLE_STEPS = 0.03, 2  # share of such an error, and steps that gain less, to end by
 FAR = 0.1  # m of error at the first guess, above which controls are put beside their bodies
 FULL = 0.05  # of a turn, by which a body that follows in full may miss it
 SIZES = 0.002  # m of error that a doubled size counts: where a limb is straight it does nothing

@@ -45,7 +45,7 @@ pytestmark = pytest.mark.usefixtures("_enabled")
 
 
 def performing(*, ik: bool) -> bpy.types.Object:
-    """The generated rig with the jump on its controls, of limbs in forward or inverse kinematics"""
+    """The generated rig with the jump on its controls, limbs in inverse kinematics or forward."""
     rig = rigify_human(jumper(), ik=ik, rate=24)
     bpy.context.view_layer.objects.active = rig
     return rig
