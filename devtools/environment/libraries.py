@@ -30,6 +30,8 @@ PACKAGES = (
     "libxxf86vm1",
 )
 
+LOCK = Path("/run/lock/hangtime-apt")  # held by the one of our processes that installs
+
 PROBE = """
 import ctypes, os, sys
 if sys.platform == "linux":
@@ -80,7 +82,11 @@ def install(why: str, packages: tuple[str, ...], log: Path) -> None:
         raise SetUpError(f"{why}; install what Debian calls {names} and try again.")
     if os.geteuid() != 0:
         raise SetUpError(f"{why}; run this and try again: sudo {line}")
+    import fcntl  # not on Windows, where nothing comes this far
+
     print(f"{why}.")
     variables = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
-    run_quietly("Reading Debian's package lists", ["apt-get", "update"], log, variables)
-    run_quietly("Installing it with apt-get", line.split(), log, variables)
+    with LOCK.open("w") as lock:  # apt-get gives up where another holds its package lists
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        run_quietly("Reading Debian's package lists", ["apt-get", "update"], log, variables)
+        run_quietly("Installing it with apt-get", line.split(), log, variables)

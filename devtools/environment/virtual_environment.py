@@ -66,10 +66,14 @@ class VirtualEnvironment:
     def variables(self) -> dict[str, str]:
         """The process environment for programs that run here; nothing of the user's leaks in."""
         settings = self.folder / "blender_user"
-        settings.mkdir(exist_ok=True)
-        leaks = ("PYTHONPATH", "PYTHONHOME", "__PYVENV_LAUNCHER__")
+        settings.mkdir(parents=True, exist_ok=True)
+        leaks = ("PYTHONPATH", "PYTHONHOME", "PYTHONDONTWRITEBYTECODE", "__PYVENV_LAUNCHER__")
         kept = {name: value for name, value in os.environ.items() if name not in leaks}
-        return {**kept, "PYTHONNOUSERSITE": "1", "BLENDER_USER_RESOURCES": str(settings)}
+        # Hundreds of short processes would each compile numpy and scipy anew where nothing is
+        # written; here it lies beside nobody's files.
+        bytecode = {"PYTHONPYCACHEPREFIX": str(self.folder / "bytecode")}
+        own = {"PYTHONNOUSERSITE": "1", "BLENDER_USER_RESOURCES": str(settings)}
+        return {**kept, **own, **bytecode}
 
 
 def prepare(blender: Blender, python: str, tools: bool) -> VirtualEnvironment:

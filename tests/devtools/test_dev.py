@@ -1,5 +1,6 @@
 """The set-up's own decisions; that it works as a whole is what every CI run shows."""
 
+import subprocess
 import sys
 from pathlib import Path
 
@@ -8,6 +9,7 @@ from hangtime.devtools import package
 from hangtime.devtools.checks import summary
 from hangtime.devtools.environment import libraries, pythons
 from hangtime.devtools.environment.problem import SetUpError
+from hangtime.devtools.environment.virtual_environment import VirtualEnvironment
 
 
 def test_without_a_wish_the_running_python_decides() -> None:
@@ -82,3 +84,14 @@ def test_what_no_command_expects_ends_in_a_code_as_well(
     monkeypatch.setattr(package, "main", fail)
     assert package.told([]) == 1
     assert "IndexError: no frame 0" in capsys.readouterr().err
+
+
+def test_bytecode_is_kept_in_the_environment_whatever_the_user_prefers(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
+    (tmp_path / "module.py").write_text("")
+    variables = VirtualEnvironment(tmp_path / "env").variables()
+    subprocess.run([sys.executable, "-c", "import module"], cwd=tmp_path, env=variables, check=True)
+    assert list((tmp_path / "env").rglob("module.*.pyc"))
+    assert not (tmp_path / "__pycache__").exists()
