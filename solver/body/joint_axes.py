@@ -111,7 +111,7 @@ def _search(R: FloatArray, parent: FloatArray, child: FloatArray) -> tuple[Float
     """
     sample = R[:: max(1, len(R) // 80)]
     first, last = (half_sphere(180) @ frame.T for frame in (parent, child))
-    turned = np.einsum("tij,wj->twi", sample, last)
+    turned = last @ np.swapaxes(sample, -1, -2)
     some = np.zeros(len(sample), dtype=bool)
     some[::5] = True
     least = _middle_sines(first, turned[some])
@@ -177,7 +177,7 @@ def universal_axes(R: FloatArray, expected: tuple[FloatArray, FloatArray]) -> Jo
             was = v
             u = _smallest(form @ np.outer(v, v).ravel())
             v = _smallest(np.outer(u, u).ravel() @ form)
-            if np.abs(np.cross(was, v)).max() < SETTLED:
+            if np.abs(_towards(was, v) - was).max() < SETTLED:
                 break
         error = float(weight @ ((poses @ v) @ u) ** 2)
         if best is None or error < CLEARLY * best[0] - PRIOR_NOISE:

@@ -10,7 +10,7 @@ import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 from .names import plain
@@ -19,6 +19,11 @@ from .tree import Tree
 
 TABLES = Path(__file__).parent / "tables"
 FULL = len(REQUIRED_KEYS)
+
+
+@lru_cache(maxsize=10_000)  # a skeleton is mapped again and again, by each convention
+def _bare(prefix: re.Pattern[str], name: str) -> str:
+    return plain(prefix.sub("", re.split(r"[:|]", name)[-1]) or name)
 
 
 @dataclass(frozen=True)
@@ -32,7 +37,7 @@ class Convention:
 
     def bare(self, name: str) -> str:
         """A bone's name without namespace and prefix, as `plain` makes it."""
-        return plain(self.prefix.sub("", re.split(r"[:|]", name)[-1]) or name)
+        return _bare(self.prefix, name)
 
     def match(self, tree: Tree) -> tuple[Found, int]:
         """The bones that go by this convention's names, and how many of its marks are there."""

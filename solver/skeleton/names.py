@@ -7,6 +7,7 @@ LeftHip, LeftKnee). The style of a side is decided by what else is there: a *sho
 
 import re
 from collections.abc import Mapping
+from functools import lru_cache
 
 from .parts import SIDED_PARTS, SIDES, Found, Part, Side
 from .tree import Tree
@@ -32,6 +33,7 @@ SIDE_WORDS: Mapping[Side, tuple[str, ...]] = {
 }
 
 
+@lru_cache(maxsize=10_000)
 def split_side(name: str) -> tuple[Side, str]:
     """Side and bare lower-case word of a bone's name: 'mixamorig:LeftUpLeg' -> (LEFT, 'upleg')."""
     bare = re.split(r"[:|]", name)[-1]
