@@ -27,7 +27,7 @@ WIDTH = 1600
 
 
 def main(argv: list[str]) -> int:
-    task, name, folder = argv[0], argv[1], Path(argv[2])
+    task, name, place = argv[0], argv[1], Path(argv[2])
     result = load(name)
     if not result.clip.is_file():
         print(f"there is no recording {result.clip.name}")
@@ -36,9 +36,9 @@ def main(argv: list[str]) -> int:
         bpy.ops.wm.read_factory_settings(use_empty=True)
         armature = import_clip(result.clip).armature
     if task == "read":
-        dump(_recording(armature, result), folder / "recording.pickle")
+        dump(_recording(armature, result), place)
         return 0
-    _write(armature, result, folder, picture="--no-picture" not in argv)
+    _write(armature, result, place, picture="--no-picture" not in argv)
     return 0
 
 

@@ -1,7 +1,7 @@
 """One result of the gallery: what is solved, where its files lie, and the processes that make it.
 
-Blender reads the clip, a process of its own solves and measures, Blender writes and draws: the
-solver's memory and any crash are each one's own.
+Blender reads the clip, for all results that are made of it; a process of its own solves and
+measures, Blender writes and draws: the solver's memory and any crash are each one's own.
 """
 
 import json
@@ -20,7 +20,7 @@ EXAMPLES = ROOT / "examples"
 BLENDER, SOLVE = "devtools.gallery.blender", "devtools.gallery.solve"
 LONGEST = 400.0  # s, that solving one result may take by all methods together
 LEFT = ("sheet.png", "adapted.fbx", "report.json", "trajectory.npz")  # what a result leaves
-SCRATCH = ("recording.pickle", "drawn.pickle", "measured.json", "written.json")
+SCRATCH = ("drawn.pickle", "measured.json", "written.json")
 Json = dict[str, Any]
 
 
@@ -78,15 +78,22 @@ def names(page: Page) -> list[str]:
     return [path.stem for path in sorted(page.folder.glob("*.toml"), key=order)]
 
 
-def work(result: Result, folder: Path, *, pictures: bool, quick: bool) -> Json:
-    """Makes one result in a folder; what was measured, with "failed" where something went wrong."""
+def work(result: Result, folder: Path, recordings: Path, *, pictures: bool, quick: bool) -> Json:
+    """Makes one result in a folder; what was measured, with "failed" where something went wrong.
+
+    recordings: folder of the clips that were read so far, as they are given to the solver.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     for name in (*LEFT, *SCRATCH):
         (folder / name).unlink(missing_ok=True)
-    said = run_module(BLENDER, ["read", result.name, str(folder)], LONGEST)
+    first, last = result.problem.frames or ("first", "last")
+    recording = recordings / f"{result.clip.name}.{first}-{last}.pickle"
+    said = None
+    if not recording.is_file():
+        said = run_module(BLENDER, ["read", result.name, str(recording)], LONGEST)
     if said is None:
         words = ["--quick"] if quick or result.page is Page.SCENE else []
-        said = run_module(SOLVE, [result.name, str(folder), *words], LONGEST)
+        said = run_module(SOLVE, [result.name, str(folder), str(recording), *words], LONGEST)
     found = _read(folder / "measured.json")
     if said is None and (folder / "drawn.pickle").is_file():
         words = ["write", result.name, str(folder), *([] if pictures else ["--no-picture"])]

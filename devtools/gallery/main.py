@@ -6,6 +6,7 @@ Ends with 1 where a result is not as it should be.
 """
 
 import argparse
+import tempfile
 from dataclasses import asdict
 from pathlib import Path
 
@@ -42,10 +43,12 @@ def main(argv: list[str]) -> int:
         print(f"{absent[0].name}: there is no recording {absent[0].clip}.")
         return 2
     rows: list[Json] = []
-    for result in chosen:
-        folder, pictures = options.out / result.name, not options.no_pictures
-        rows.append(work(result, folder, pictures=pictures, quick=options.quick))
-        print(line(rows[-1]), flush=True)
+    pictures, quick = not options.no_pictures, options.quick
+    with tempfile.TemporaryDirectory() as scratch:
+        for result in chosen:
+            folder = options.out / result.name
+            rows.append(work(result, folder, Path(scratch), pictures=pictures, quick=quick))
+            print(line(rows[-1]), flush=True)
     if not options.names and (options.scene or not options.quick):
         write_page(rows, scene_alone=options.scene)
     return tell(rows, options.out)

@@ -27,10 +27,10 @@ RUNS = 3  # of the quick solution; the median counts
 
 
 def main(argv: list[str]) -> int:
-    name, folder = argv[0], Path(argv[1])
+    name, folder, recording = argv[0], Path(argv[1]), Path(argv[2])
     methods = tuple(Method)[:1] if "--quick" in argv else tuple(Method)
     result = load(name)
-    subject = measure(undump(folder / "recording.pickle"), result.problem)
+    subject = measure(undump(recording), result.problem)
     clock = StageClock()
     fitted = fit_subject(subject, clock)
     found: Json = {"fit": _solved(fitted, clock.done[-1].seconds), "methods": {}}
