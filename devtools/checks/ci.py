@@ -61,18 +61,20 @@ def suite(blender: str, *parts: str) -> Check:
 
 def shared_checks() -> Iterator[Check]:
     """Checks that leave a core to another; the longest first, so that both cores end together."""
-    for name, chosen in (("solver", "tests/solver"), ("rest", "tests --ignore=tests/solver")):
-        yield Check(f"slow tests, {name}", (tests("4.5", f"slow-{name}", f"{chosen} -m slow"),))
-    # The slow ones in 4.5, and in the newest, which is the least like the others.
-    if runs("5.2"):
-        yield suite("5.2", "tests/blender tests/installed")
+    in_blender, zipped, quick = "tests/blender", "tests/installed", "-m 'not slow'"
+    operators = f"{in_blender}/operators"
+    without = f"tests --ignore=tests/solver --ignore={in_blender}"
+    # Slow tests once: those in Blender in the newest, which is the least like that of the README's
+    # tests.
+    newest = "5.2" if runs("5.2") else "4.5"
+    yield suite(newest, in_blender, zipped)
     # In several processes: late in one that has done all of it 4.2 ends with a segmentation fault,
     # in its glTF add-on.
-    operators, quick = "tests/blender/operators", "-m 'not slow'"
-    others = f"tests/blender --ignore={operators} {quick}"
-    yield suite("4.2", f"{operators} {quick}", others, "tests/installed")
-    yield suite("5.0", f"tests/blender {quick}", "tests/installed")
-    yield measure("the gallery's results, solved and written", "gallery --quick --no-pictures")
+    others = f"{in_blender} --ignore={operators}"
+    yield suite("4.2", f"{operators} {quick}", f"{others} {quick}", zipped)
+    for name, chosen in (("solver", "tests/solver"), ("rest", without)):
+        yield Check(f"slow tests, {name}", (tests("4.5", f"slow-{name}", f"{chosen} -m slow"),))
+    yield suite("5.0", f"{in_blender} {quick}", zipped)
     yield Check(
         "farms, and batches that are killed",
         (
@@ -80,15 +82,18 @@ def shared_checks() -> Iterator[Check]:
             "farm --blender 4.5 --quick --tell --out {out}",
         ),
     )
-    yield measure("force plates", f"validate {plates()} --no-curves")
-    yield measure("skeletons of all conventions", "rigs --quick")
-    yield measure("the benchmark", "benchmark --quick")
+    yield measure("the gallery's results, solved and written", "gallery --quick --no-pictures")
     yield measure("the hostile campaign", "campaign --cases 1000")
-    yield measure("recordings damaged, diagnosed and repaired", "doctor --table --quick")
+    yield measure("force plates", f"validate {plates()} --no-curves")
+    yield measure("the benchmark", "benchmark --quick")
+    yield Check("the window's sandbox", ("window --prepare",))
     yield measure("what is repaired is fitted", "doctor --fits --quick")
+    yield measure("skeletons of all conventions", "rigs --quick")
+    yield Check("lint", ("lint --blender 4.5",))
+    yield measure("recordings damaged, diagnosed and repaired", "doctor --table --quick")
     yield measure("reduced keys", "keys")
-    yield measure("nothing goes through anything", "solid --quick")
     yield measure("every kind of edit on a jump", "survey --quick")
+    yield measure("nothing goes through anything", "solid --quick")
     yield measure("seams of loops", "loop")
     yield measure("build", "build")
 
@@ -118,8 +123,7 @@ def runs(blender: str) -> bool:
 def main() -> int:
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
-        # The first two make the environments in which the others run side by side.
-        first = [standalone(folder / "clone"), Check("lint", ("lint --blender 4.5",))]
+        first = [standalone(folder / "clone")]
         window = "window --blender 4.5 --tell --reports {reports}/window --out {out}"
         last = [Check("the window, driven by mouse and keys", (window,))]
         outcomes = list(run_all(first, list(shared_checks()), last, folder))
@@ -134,9 +138,9 @@ def run_all(
     first: list[Check], shared: list[Check], last: list[Check], folder: Path
 ) -> Iterator[CheckRun]:
     """Outcomes, told as they come: `first` and `last` one by one, `shared` side by side."""
+    for check in first:
+        yield told(run(check, folder))
     with ThreadPoolExecutor(CORES) as pool:
-        for check in first:
-            yield told(run(check, folder))
         for pending in as_completed([pool.submit(run, check, folder) for check in shared]):
             yield told(pending.result())
         for check in last:

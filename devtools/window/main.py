@@ -76,10 +76,13 @@ def main(argv: list[str]) -> int:
     parser.add_argument(
         "--manual", action="store_true", help="only renew the manual's pictures, in docs/images"
     )
+    parser.add_argument("--prepare", action="store_true", help="only make the place it runs in")
     options = parser.parse_args(argv)
     options.out.mkdir(parents=True, exist_ok=True)
     try:
         sandbox = prepare(options.suite)
+        if options.prepare:
+            return 0
         with tempfile.TemporaryDirectory() as folder:
             zipped = options.zip or own_zip(Path(folder))
             scenes = [*manual_images.SCENARIOS.values()] if options.manual else options.scenes or []

@@ -4,7 +4,6 @@ import csv
 import json
 import os
 import re
-import time
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +17,6 @@ from hangtime.batch.collect.png import read_png
 from hangtime.batch.records.faults import FolderGone, WrongManifest
 from hangtime.batch.records.result import CELLS, RESULT, State, read_result
 from hangtime.devtools.batch_page.made_up import HARD_NAMES, make_batch
-from hangtime.devtools.batch_page.measure import measure_collecting
 
 CELLS_MADE = 40
 TILE = 240 + 2 * HIGH + 20  # pixels from one line of the contact sheet to the next
@@ -168,13 +166,3 @@ def test_letters_of_several_alphabets_are_drawn_and_others_are_boxes() -> None:
     assert not np.array_equal(drawn("ж"), drawn(BOX))
     assert np.array_equal(drawn("e\u0301"), drawn("é"))
     assert np.array_equal(drawn("a" * 13), drawn("a" * 11 + "…"))
-
-
-@pytest.mark.slow
-def test_ten_thousand_cells_are_collected_in_the_time_and_memory_promised(tmp_path: Path) -> None:
-    make_batch(tmp_path, 10_000, clips=100)
-    begun = time.monotonic()
-    told = measure_collecting(tmp_path)
-    assert told.seconds <= time.monotonic() - begun
-    assert told.seconds <= 20.0
-    assert told.megabytes <= 500.0
