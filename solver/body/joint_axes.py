@@ -111,7 +111,7 @@ def _search(R: FloatArray, parent: FloatArray, child: FloatArray) -> tuple[Float
     """
     sample = R[:: max(1, len(R) // 80)]
     first, last = (half_sphere(180) @ frame.T for frame in (parent, child))
-    turned = last @ np.swapaxes(sample, -1, -2)
+    turned = np.einsum("tij,wj->twi", sample, last)
     some = np.zeros(len(sample), dtype=bool)
     some[::5] = True
     least = _middle_sines(first, turned[some])
