@@ -228,16 +228,16 @@ def _cut_frames(at: FloatArray, inside: NDArray[np.bool_], first: float, last: f
 
 def table(curve: bpy.types.FCurve) -> KeyTable:
     """Everything that the keys of a curve carry."""
-    count = len(curve.keyframe_points)
-    found: KeyTable = {}
-    for name, width in _FLOATS.items():
-        found[name] = np.empty((count, width), np.float32)
-    for name in _ENUMS:
-        found[name] = np.empty((count, 1), np.int32)
-    for name, column in found.items():
-        flat = column.ravel()
-        curve.keyframe_points.foreach_get(name, flat)
-        found[name] = flat.reshape(column.shape)
+    return {name: column(curve, name) for name in (*_FLOATS, *_ENUMS)}
+
+
+def column(curve: bpy.types.FCurve, name: str) -> NDArray[Any]:
+    """(n, width) one column of the table."""
+    points = curve.keyframe_points
+    found = np.empty(
+        (len(points), _FLOATS.get(name, 1)), np.float32 if name in _FLOATS else np.int32
+    )
+    points.foreach_get(name, found.reshape(-1))  # a view
     return found
 
 

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from ..action_slots import all_curves
-from .fcurves import KeyTable, table
+from .fcurves import column
 
 _BEZIER = 2  # of Blender's enum; what is above are named easings, such as Elastic
 _HANDLES = ("handle_left", "handle_right")
@@ -23,24 +23,26 @@ def keys_digest(action: bpy.types.Action) -> str:
     found = 0
     for curve in all_curves(action):
         found = crc32(f"{curve.data_path}[{curve.array_index}]{curve.mute}".encode(), found)
-        found = _keys(table(curve), found)
+        found = _keys(curve, found)
         found = crc32(curve.extrapolation.encode(), found)
         for modifier in curve.modifiers:
             found = crc32(repr(_stored(modifier)).encode(), found)
     return str(found)
 
 
-def _keys(keys: KeyTable, found: int) -> int:
-    found = crc32(keys["co"].tobytes(), found)
-    interpolation = keys["interpolation"][:, 0]
+def _keys(curve: bpy.types.FCurve, found: int) -> int:
+    """Of its keys; columns that do not count are not read, which takes longest."""
+    found = crc32(column(curve, "co").tobytes(), found)
+    interpolation = column(curve, "interpolation")[:, 0]
     found = crc32(interpolation.tobytes(), found)
     bent = interpolation == _BEZIER
     after_bent = np.concatenate([[False], bent[:-1]]) if len(bent) else bent
     for name, used in zip(_HANDLES, (after_bent, bent), strict=True):
-        found = crc32(keys[name][used].tobytes(), found)
+        if used.any():
+            found = crc32(column(curve, name)[used].tobytes(), found)
     eased = interpolation > _BEZIER
     for name in _EASINGS if eased.any() else ():
-        found = crc32(keys[name][eased].tobytes(), found)
+        found = crc32(column(curve, name)[eased].tobytes(), found)
     return found
 
 

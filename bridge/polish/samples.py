@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from io import BytesIO
 
@@ -69,8 +68,9 @@ def sampled(action: bpy.types.Action, slot: str | None) -> CurveSamples:
 
 def _values(curve: bpy.types.FCurve, frames: FloatArray) -> FloatArray:
     keys = fcurves.keys(curve)
-    plain = not len(curve.modifiers) and np.array_equal(keys[:, 0], frames)
-    values: Iterable[float] = keys[:, 1] if plain else map(curve.evaluate, frames.tolist())
+    if not len(curve.modifiers) and np.array_equal(keys[:, 0], frames):
+        return keys[:, 1]
+    values = map(curve.evaluate, frames.tolist())
     return np.fromiter(values, np.float32, len(frames)).astype(float)
 
 

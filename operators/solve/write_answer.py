@@ -28,11 +28,13 @@ from ...bridge.polish.renewal import Renewal
 from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.properties.shown_overlaps import store_overlaps
 from ...bridge.properties.shown_times import store_times
+from ...bridge.recipe.result import ResultOptions
 from ...bridge.rows.choices import After, ContactMarkers, WrittenAs
 from ...bridge.rows.phases import roles
 from ...bridge.scene.played_end import play_longer
 from ...bridge.takes.options import loop_options, result_options
 from ...bridge.takes.plan import AdaptedMotion
+from ...bridge.takes.span import ResultSpan
 from ...bridge.takes.take_time import TakeTime
 from ...bridge.takes.takes import (
     adapted_spans,
@@ -148,6 +150,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     times = answer.report.times
     time = written.time if written is not None else TakeTime.of(times, 1.0)
     span = written.span if written is not None else None
+    finishing = _finish(armature, action, answer, options, renewal, span, time)
     try:
         yield from _tell_missed(armature, armature, action, answer)
         rate = answer.report.recording.frames_per_second
@@ -156,16 +159,35 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         rig = written.rig if written is not None else None
         yield from write_keys(armature, armature, action, answer, rig)
         _tell_unmet(armature, action, answer.track)
-    finally:  # cancelled it has a key on every frame
-        mark_contacts(armature, action, answer, options)
-        match options.written_as:
-            case WrittenAs.COMBINE:
-                combine(armature, action, options.after)
-            case WrittenAs.SLOT:
-                lay_in_slot(armature, present(source_of(action)), action)
-        note_made(armature, action, span, time.later)
-        renewal.note(action, time, (times.recorded_frame[0], times.recorded_frame[-1]))
+        for _ in finishing:  # not "yield from", which would close it with what it is part of
+            yield None
+    finally:
+        complete(finishing)  # cancelled, the result has a key on every frame
     return f"Wrote the {FORMS[options.written_as]} {action.name}"
+
+
+def _finish(
+    armature: bpy.types.Object,
+    action: bpy.types.Action,
+    answer: Adapted,
+    options: ResultOptions,
+    renewal: Renewal,
+    span: ResultSpan | None,
+    time: TakeTime,
+) -> Incremental[None]:
+    """What makes written keys a result: its contacts, its form, and what it was made of."""
+    mark_contacts(armature, action, answer, options)
+    yield None
+    match options.written_as:
+        case WrittenAs.COMBINE:
+            combine(armature, action, options.after)
+        case WrittenAs.SLOT:
+            lay_in_slot(armature, present(source_of(action)), action)
+    yield None
+    note_made(armature, action, span, time.later)
+    yield None
+    frames = answer.report.times.recorded_frame
+    renewal.note(action, time, (frames[0], frames[-1]))
 
 
 def _tell_aimed(asked: Asked, armature: bpy.types.Object, track: PoseTrack) -> None:

@@ -13,8 +13,13 @@ from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.bridge.files.import_clip import import_clip
+from hangtime.bridge.polish.samples import written_of
+from hangtime.bridge.worker_client import shared
+from hangtime.operators.solve import write_answer as write_answer_module
+from hangtime.operators.solve.adapt import ask_for
 from hangtime.operators.solve.analyze import AnalyzeOperator, FitOperator
 from hangtime.operators.solve.common import said
+from hangtime.operators.solve.keys import mark_contacts
 from hangtime.operators.solve.session import Asked, session
 from hangtime.operators.solve.solving import SolveState, Solving
 from hangtime.operators.solve.task import Task, TaskOperator
@@ -22,6 +27,7 @@ from hangtime.operators.solve.write_answer import write_answer
 from hangtime.solver.data.faults import ChangedMeanwhile, NoArmature, RateChanged
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import digest
+from hangtime.solver.worker.protocol import RequestKind
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.helpers.clips import mocap_path
 
@@ -144,3 +150,30 @@ def test_plots_of_a_recording_that_was_only_analyzed(run: bpy.types.Object, tmp_
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
     assert bpy.ops.hangtime.save_plots(filepath=str(tmp_path / "plots.csv")) == {"FINISHED"}
     assert any(tmp_path.iterdir())
+
+
+def test_a_result_that_is_cancelled_while_it_is_finished_is_whole(
+    analysed: bpy.types.Object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = complete(ask_for(bpy.context))
+    job = shared().ask(RequestKind.ADAPT, asked.recording, asked.problem)
+    job.wait()
+    begun = []
+
+    def marked(*told: object) -> None:
+        begun.append(True)
+        mark_contacts(*told)
+
+    monkeypatch.setattr(write_answer_module, "mark_contacts", marked)
+    session().solving = replace(Solving(), state=SolveState.SOLVING)
+    try:
+        writing = write_answer(asked, job.answer)
+        while not begun:
+            next(writing)
+        writing.close()
+    finally:
+        session().solving = None
+    assert begun == [True]
+    result = analysed.hangtime.adapted
+    assert result.hangtime.own_key
+    assert written_of(result) is not None
