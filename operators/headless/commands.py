@@ -168,7 +168,7 @@ def adapt(options: argparse.Namespace) -> None:
         loaded = load(clip, problem, stages, recipe.repairs)
         require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
         require_place(loaded, wanted, recipe.loop)
-        require_exported(loaded, options.out, export)
+        require_exported(loaded, clip.path, options.out, export)
         _ask_about(problem, loaded, recipe.repairs)
         placed = placed_objects(recipe.under, loaded.subject.problem, loaded.subject.analysis)
         result = solve(loaded.subject.with_objects(placed), stages)

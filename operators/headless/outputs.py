@@ -14,7 +14,7 @@ from ...bridge.recipe.keys import KeyOptions
 from ...bridge.recipe.loop import LoopOptions
 from ...bridge.recipe.result import ResultOptions
 from ...bridge.rows.choices import FileFormat, KeyChoice, LoopRoot, WrittenAs
-from ...solver.data.faults import OutputNotWritable
+from ...solver.data.faults import OutputNotWritable, WouldReplaceRecording
 from ...solver.data.reports.keys import KeysReport
 from ...solver.data.reports.report import Report
 from ...solver.data.scaling import scaled_problem
@@ -36,15 +36,22 @@ if TYPE_CHECKING:  # as in clip.py
     from ...solver.data.reports.keys import MissedContact
 
 EXPORTED = "adapted"  # file name without ending
+SAVED = f"{EXPORTED}.blend"
 ASIDE = 1.5  # m; how far the recording stands beside the adapted figure
 
 
-def require_exported(clip: LoadedClip, folder: Path, export: ExportOptions) -> None:
-    """Before a solve takes its seconds. Raises OutputNotWritable, SameUsdNames."""
+def require_exported(
+    clip: LoadedClip, recording: Path, folder: Path, export: ExportOptions
+) -> None:
+    """Before a solve takes its seconds. Raises WouldReplaceRecording, OutputNotWritable,
+    SameUsdNames."""
     from ...bridge.exports.engines import ENDINGS, format_of
     from ...bridge.exports.export import require_exportable
 
     path = folder / f"{EXPORTED}{ENDINGS[format_of(export)]}"
+    for written in (path, folder / SAVED):
+        if written.exists() and written.samefile(recording):
+            raise WouldReplaceRecording(str(written))
     require_exportable(clip.armature, path, export)
 
 
@@ -103,7 +110,7 @@ class Outputs:
                 self._lay(performer, recorded, adapted)
             self._build_scene()
             if blend:
-                _save_blend(self.outbox.path("adapted.blend"))
+                _save_blend(self.outbox.path(SAVED))
         for form in forms:
             self._export(performer, adapted, form)
         self._draw(picture=picture, film=film)

@@ -2,11 +2,12 @@
 
 import json
 import os
+from collections.abc import Sequence
 from pathlib import Path
 
 from ...bridge.recipe.object_texts import object_text, support_texts
 from ...solver.analysis.analyse import Analysis
-from ...solver.data.contacts import Phase, PhaseKind
+from ...solver.data.contacts import Contact, Phase, PhaseKind
 from ...solver.data.faults import UnseenSupport
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
@@ -87,8 +88,7 @@ def starter_recipe(analysis: Analysis, problem: MotionProblem, clip: Path, recip
     """A commented recipe that pins the first landing where it is, for the artist to change."""
     recording = analysis.performance.recording
     landing = _first_landing(analysis)
-    contacts = analysis.schedule.of_phase(landing)
-    points = ", ".join(dict.fromkeys(_quoted(c.point) for c in contacts))
+    contacts = () if landing is None else analysis.schedule.of_phase(landing)
     phases, found = (
         [f"#   {each.name}: {_span(analysis, each.start, each.end)}" for each in several]
         for several in (analysis.schedule.phases, analysis.schedule.contacts)
@@ -107,15 +107,7 @@ def starter_recipe(analysis: Analysis, problem: MotionProblem, clip: Path, recip
             "# Phases found, with their frames:",
             *phases,
             "",
-            "[[pin]]",
-            'name = "Landing"',
-            f"phase = {_quoted(landing.name)}",
-            f"# points = [{points}]  # only these; else all that touches",
-            "forward = 0.0  # along the jump; negative is back",
-            "left = 0.0",
-            "up = 0.0",
-            "turn = 0  # counter-clockwise from above",
-            "",
+            *_pin(landing, contacts),
             "# Contacts found, with their frames; correct one by its name:",
             *found,
             "# [[contact]]",
@@ -127,6 +119,23 @@ def starter_recipe(analysis: Analysis, problem: MotionProblem, clip: Path, recip
     )
 
 
+def _pin(landing: Phase | None, contacts: Sequence[Contact]) -> list[str]:
+    if landing is None:
+        return ["# Nothing touches here, so there is no landing to pin.", ""]
+    points = ", ".join(dict.fromkeys(_quoted(c.point) for c in contacts))
+    return [
+        "[[pin]]",
+        'name = "Landing"',
+        f"phase = {_quoted(landing.name)}",
+        f"# points = [{points}]  # only these; else all that touches",
+        "forward = 0.0  # along the jump; negative is back",
+        "left = 0.0",
+        "up = 0.0",
+        "turn = 0  # counter-clockwise from above",
+        "",
+    ]
+
+
 def _bones(problem: MotionProblem) -> list[str]:
     if not problem.bones:
         return []
@@ -134,12 +143,12 @@ def _bones(problem: MotionProblem) -> list[str]:
     return ["", "[bones]", *chosen]
 
 
-def _first_landing(analysis: Analysis) -> Phase:
-    """The first stance after a flight, or the first of all."""
+def _first_landing(analysis: Analysis) -> Phase | None:
+    """The first stance after a flight, or the first of all; None where nothing touches."""
     phases = analysis.schedule.phases
     ground = [p for p in phases if p.kind is PhaseKind.GROUND]
     flown = next((p.end for p in phases if p.kind is PhaseKind.FLIGHT), 0.0)
-    return next((p for p in ground if p.start >= flown - 1e-9), ground[0])
+    return next((p for p in ground if p.start >= flown - 1e-9), ground[0] if ground else None)
 
 
 def relative(clip: Path, recipe: Path) -> str:

@@ -154,6 +154,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     ),
     faults.OutputNotWritable: "Nothing can be written to {path} ({problem}); choose another place "
     "or allow writing there.",
+    faults.WouldReplaceRecording: "The result would be written over its own recording, {path}; "
+    "choose another folder with --out.",
     faults.ContradictoryPins: "“{first}” and “{second}” contradict each other by {metres:length}; "
     "no pose holds both, so move one of them or move them together.",
     faults.NoSolution: (

@@ -30,6 +30,13 @@ class OutputNotWritable(Fault):
 
 
 @dataclass
+class WouldReplaceRecording(Fault):
+    """A file of the result would take the place of the recording that it is made from."""
+
+    path: str
+
+
+@dataclass
 class ContradictoryPins(Fault):
     """Two pins that no pose can hold at once."""
 

@@ -1,12 +1,16 @@
 """The text of an analysis."""
 
 from dataclasses import replace
+from pathlib import Path
 
-from hangtime.operators.words.analysis_text import analysis_text
+from hangtime.bridge.recipe.problem import parse_recipe
+from hangtime.operators.words.analysis_text import analysis_text, starter_recipe
 from hangtime.solver.analysis.analyse import analyse
+from hangtime.solver.data.contacts import ContactSchedule
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.reports.recording import Origin
 from hangtime.tests.helpers.clips import JUMP, load_recording
+from hangtime.tests.helpers.fitted_hop import hop
 
 
 def test_long_names_of_bones_leave_their_column_whole() -> None:
@@ -21,3 +25,11 @@ def test_long_names_of_bones_leave_their_column_whole() -> None:
         assert line[: at[0]].strip().startswith(contact.name)
         assert line[at[0] : at[1]].strip() == contact.bone
         assert line[at[1] - 1] == " "
+
+
+def test_a_recipe_for_a_clip_in_which_nothing_touches_pins_nothing() -> None:
+    analysis = hop()
+    flying = replace(analysis, schedule=ContactSchedule((), analysis.schedule.duration, 0.0))
+    text = starter_recipe(flying, MotionProblem(), Path("a.bvh"), Path("a.toml"))
+    assert "Nothing touches here" in text
+    assert not parse_recipe(text).problem.pins

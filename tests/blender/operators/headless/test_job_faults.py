@@ -55,6 +55,26 @@ def test_frames_beyond_the_recording_are_told_with_those_that_it_has(
         read_clip(clip, MotionProblem(frames=(400.0, 700.0)))
 
 
+@pytest.mark.parametrize("name", ["adapted.blend", "adapted.fbx"])
+def test_a_result_never_takes_the_place_of_its_recording(
+    name: str, clip: Path, tmp_path: Path, capsys
+) -> None:
+    """As where the result of one job is the recording of the next."""
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    import_clip(clip)
+    recording = tmp_path / "out" / name
+    recording.parent.mkdir()
+    if recording.suffix == ".blend":
+        bpy.ops.wm.save_as_mainfile(filepath=str(recording))
+    else:
+        bpy.ops.export_scene.fbx(filepath=str(recording))
+    before = recording.read_bytes()
+    assert run(tmp_path, recording, EDIT, "--no-picture") == 2
+    assert "written over its own recording" in one_line(capsys)
+    assert [recording] == list(recording.parent.iterdir())
+    assert recording.read_bytes() == before
+
+
 def test_a_truncated_clip_is_said_with_its_line(clip: Path, tmp_path: Path, capsys) -> None:
     short = tmp_path / "short.bvh"
     short.write_bytes(clip.read_bytes()[:20_000])
