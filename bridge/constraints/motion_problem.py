@@ -6,12 +6,11 @@ The solver's metres and seconds become Blender's units and scene frames here, an
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from math import isclose
-from types import SimpleNamespace
 from typing import Any
 
-import bpy
 import numpy as np
 
 from ...solver.data.contacts import Contact, ContactSchedule, Interval, Phase, PhaseKind, numbered
@@ -32,21 +31,15 @@ from ..recipe.problem import parse_recipe
 from ..repairs.stored import applied, of_recording, unreadable
 from ..repairs.unreadable import require_readable
 from ..rows.copying import resized
+from ..rows.held_contacts import UNMOVED, HeldContact, found_again, frame_of, moves
 from ..rows.phases import phases_of, unseen_frames
 from ..scene.members import ground_members, present_members
 from ..takes.options import loop_options
 from .bone_mapping import chosen_parts
 from .requests import joined, requests_of
 
-_KEPT = (
-    *("name", "point", "bone", "phase", "added", "used", "empty", "on"),
-    *("found_start", "found_end", "start_frame", "end_frame", "found_at", "at"),
-)
 _METRES_PER_MM = 1e-3
-_UNMOVED = 1e-5  # Blender units
 SAME_RATE = 1e-6  # relative; what a scene stores is float32
-_SAME_START = 2.0  # frames; how far apart two analyses may see the same contact begin
-_SAME_PLACE = 0.01  # Blender units
 
 
 def wanted_range(settings: HangtimeSettings) -> tuple[float, float] | tuple[None, None]:
@@ -257,7 +250,7 @@ def _pins(settings: HangtimeSettings, span: tuple[float, float], held: str) -> t
 
 def moved(row: HangtimeContact) -> bool:
     """Whether a contact is to be elsewhere than recorded."""
-    return any(abs(a - b) > _UNMOVED for a, b in zip(row.at, row.found_at, strict=True))
+    return any(abs(a - b) > UNMOVED for a, b in zip(row.at, row.found_at, strict=True))
 
 
 def _bare_contact(row: HangtimeContact, first: float, rate: float, duration: float) -> Contact:
@@ -272,27 +265,13 @@ def _ground_phase(schedule: ContactSchedule, contact: Contact) -> Phase | None:
     return next((p for p in ground if p.start < contact.end and p.end > contact.start), None)
 
 
-def _held(row: HangtimeContact) -> SimpleNamespace:
-    """What a contact's row holds, to be put into one again after another analysis."""
-    return SimpleNamespace(**{name: _plain(getattr(row, name)) for name in _KEPT})
-
-
-def _same_contact(row: HangtimeContact, held: SimpleNamespace) -> bool:
-    """Whether the row is the contact that was edited."""
-    apart = max(abs(a - b) for a, b in zip(row.found_at, held.found_at, strict=True))
-    near = abs(row.found_start - held.found_start) < _SAME_START and apart < _SAME_PLACE
-    return bool(row.point == held.point and near)
-
-
-def _plain(value: object) -> object:
-    """A vector as a tuple, which outlives its owner."""
-    return tuple(value) if isinstance(value, bpy.types.bpy_prop_array) else value
-
-
-def write_analysis(settings: HangtimeSettings, recording: Recording, found: Analysed) -> None:
-    """Fills the settings' contacts and stances; contacts that are found again keep their edits."""
-    edits = [_held(row) for row in settings.contacts if not row.added]
-    added = [_held(row) for row in settings.contacts if row.added]
+def write_analysis(
+    settings: HangtimeSettings, recording: Recording, found: Analysed
+) -> tuple[str, ...]:
+    """Fills the settings' contacts and stances; contacts that are found again keep their edits.
+    Names of those that were edited and are not found any more."""
+    edits = [HeldContact.of(row) for row in settings.contacts if not row.added]
+    added = [HeldContact.of(row) for row in settings.contacts if row.added]
     metres = metres_per_unit(current_scene())
     first, rate = span_of(settings, recording)[0], frames_per_second(current_scene())
     settings.measured_height = found.height
@@ -317,11 +296,12 @@ def write_analysis(settings: HangtimeSettings, recording: Recording, found: Anal
     for row, kept in zip(rows[len(contacts) :], added, strict=True):
         for name, value in vars(kept).items():
             setattr(row, name, value)
-    _restore(settings, edits)
+    lost = _restore(settings, edits)
     if edits:
         settings.active_contact = min(settings.active_contact, len(settings.contacts) - 1)
     else:
         _choose_first_landing(settings)
+    return lost
 
 
 def _choose_first_landing(settings: HangtimeSettings) -> None:
@@ -337,19 +317,17 @@ def _choose_first_landing(settings: HangtimeSettings) -> None:
     settings.active_contact = phases.index(landing) if landing in phases else 0
 
 
-def _restore(settings: HangtimeSettings, edits: list[SimpleNamespace]) -> None:
-    whole, settings.whole_stance = settings.whole_stance, False
-    for row in settings.contacts:
-        edit = next((e for e in edits if _same_contact(row, e)), None)
-        if edit is None:
-            continue
-        row.used = edit.used
-        if edit.start_frame != edit.found_start:
-            row.start_frame = edit.start_frame
-        if edit.end_frame != edit.found_end:
-            row.end_frame = edit.end_frame
-        row.empty = edit.empty
-        by = [now - was for now, was in zip(edit.at, edit.found_at, strict=True)]
-        place(settings, row, [a + b for a, b in zip(row.found_at, by, strict=True)])
-        row.on = edit.on
-    settings.whole_stance = whole
+def _restore(settings: HangtimeSettings, edits: Sequence[HeldContact]) -> tuple[str, ...]:
+    """Gives contacts their edits; names of those that were edited and are not found any more."""
+    rows = [row for row in settings.contacts if not row.added]
+    again = found_again(rows, edits, 1.0 / metres_per_unit(current_scene()))
+    for i, edit in again.items():
+        row = rows[i]
+        row.used, row.empty, row.on = edit.used, edit.empty, edit.on
+        row.start_frame = frame_of(row.found_start, edit.found_start, edit.start_frame)
+        row.end_frame = frame_of(row.found_end, edit.found_end, edit.end_frame)
+    for i, move in moves(rows, again).items():
+        to = [a + b for a, b in zip(rows[i].found_at, move, strict=True)]
+        place(settings, rows[i], to, whole=False)
+    kept = set(map(id, again.values()))
+    return tuple(edit.name for edit in edits if edit.changed and id(edit) not in kept)

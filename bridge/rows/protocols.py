@@ -21,6 +21,7 @@ class ContactRow(Protocol):
     """A contact; frames, and (3,) places in Blender units, world."""
 
     name: str
+    point: str
     bone: str
     added: bool
     phase: str

@@ -40,19 +40,24 @@ SAVED = f"{EXPORTED}.blend"
 ASIDE = 1.5  # m; how far the recording stands beside the adapted figure
 
 
-def require_exported(
-    clip: LoadedClip, recording: Path, folder: Path, export: ExportOptions
-) -> None:
-    """Before a solve takes its seconds. Raises WouldReplaceRecording, OutputNotWritable,
-    SameUsdNames."""
-    from ...bridge.exports.engines import ENDINGS, format_of
+def require_apart(recording: Path, folder: Path, export: ExportOptions) -> None:
+    """Before a solve takes its seconds. Raises WouldReplaceRecording."""
+    for written in (_exported(folder, export), folder / SAVED):
+        if recording.exists() and written.exists() and written.samefile(recording):
+            raise WouldReplaceRecording(str(written))
+
+
+def require_exported(clip: LoadedClip, folder: Path, export: ExportOptions) -> None:
+    """Before a solve takes its seconds. Raises OutputNotWritable, SameUsdNames."""
     from ...bridge.exports.export import require_exportable
 
-    path = folder / f"{EXPORTED}{ENDINGS[format_of(export)]}"
-    for written in (path, folder / SAVED):
-        if written.exists() and written.samefile(recording):
-            raise WouldReplaceRecording(str(written))
-    require_exportable(clip.armature, path, export)
+    require_exportable(clip.armature, _exported(folder, export), export)
+
+
+def _exported(folder: Path, export: ExportOptions) -> Path:
+    from ...bridge.exports.engines import ENDINGS, format_of
+
+    return folder / f"{EXPORTED}{ENDINGS[format_of(export)]}"
 
 
 def require_place(clip: LoadedClip, wanted: ResultOptions, loop: LoopOptions | None) -> None:

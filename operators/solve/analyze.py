@@ -2,7 +2,7 @@
 
 from collections.abc import Generator
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import bpy
@@ -25,6 +25,7 @@ from ...bridge.worker_requests import PendingRequest
 from ...solver.analysis.take import require_inside
 from ...solver.data.faults import (
     Fault,
+    LostEdits,
     MissingPart,
     OddHeight,
     UnseenSupport,
@@ -114,11 +115,11 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     def task(self, context: bpy.types.Context) -> Task:
-        found = yield from analysis(context)
+        done = yield from analysis(context)
         if not bpy.app.background:
             session().advance(SolveState.PREPARING)
             yield from _prepare_drag(context)
-        return found
+        return done.told
 
 
 class UpdateOperator(Adapting, bpy.types.Operator):
@@ -149,12 +150,24 @@ class UpdateOperator(Adapting, bpy.types.Operator):
         armature = required_armature(context)
         recording = yield from read_wanted(armature)
         if not analysis_is_of(settings_of(armature), recording):
-            yield from analysis(context)
+            lost = (yield from analysis(context)).lost
+            if lost:
+                raise LostEdits(lost)
             present(session().solving).again()
         return (yield from super().task(context))
 
 
-def analysis(context: bpy.types.Context) -> Task:
+@dataclass(frozen=True)
+class AnalysisOutcome:
+    """What to tell of an analysis. lost: contacts that were edited and are not found any more."""
+
+    told: str
+    lost: tuple[str, ...]
+
+
+def analysis(
+    context: bpy.types.Context,
+) -> Generator[PendingRequest | float | None, None, AnalysisOutcome]:
     """Finds contacts, and keeps them with the armature. Raises any Fault of a recording."""
     armature = required_armature(context)
     settings = settings_of(armature)
@@ -197,13 +210,15 @@ def analysis(context: bpy.types.Context) -> Task:
     if boxes:
         session().support = (armature.session_uid, tuple(boxes))
     yield None
-    write_analysis(settings, recording, answer)
+    lost = write_analysis(settings, recording, answer)
     keep(armature, answer.traces, armature.matrix_world)
     settings.shapes_told = shapes_told(bound, answer.bones, answer.fleshed)
     scene_settings(context.scene).armature = armature
     found = f"Found {contacts} contacts and {flights or 'no'} flight{'s' if flights > 1 else ''}"
     found = f"{found}{bind}{_snapped(settings, span)}{_noise(recording, problem)}{_unseen(answer)}"
-    return f"{found}; but {said(odd)}" if odd is not None else found
+    if lost:
+        found = f"{found}. {said(LostEdits(lost)).rstrip('.')}"
+    return AnalysisOutcome(f"{found}; but {said(odd)}" if odd is not None else found, lost)
 
 
 def _prepare_drag(context: bpy.types.Context) -> Incremental[None]:

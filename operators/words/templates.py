@@ -291,6 +291,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
         "{now:.5g} frames a second while it was solved; set it back to {before:.5g} (Output > "
         "Format > Frame Rate) and try again, or press Analyze.",
     ),
+    faults.LostEdits: "What you changed about {contacts:names} is gone, for an analysis finds no "
+    "such contact any more; look through the contacts, and move them again.",
     faults.ChangedMeanwhile: (
         "Nothing was done, because the armature “{armature}”, its keys, its repairs or the scene's "
         "frame rate changed since the analysis; press Analyze again.",

@@ -18,6 +18,7 @@ from .recordings import ClipNotOpened as ClipNotOpened
 from .recordings import ClipTooShort as ClipTooShort
 from .recordings import FramesFarApart as FramesFarApart
 from .recordings import FramesReversed as FramesReversed
+from .recordings import LostEdits as LostEdits
 from .recordings import MirroredInBlender as MirroredInBlender
 from .recordings import MissingPart as MissingPart
 from .recordings import NoAction as NoAction

@@ -308,6 +308,13 @@ class RateChanged(Fault):
 
 
 @dataclass
+class LostEdits(Fault):
+    """Contacts that the artist had changed are not found any more, by their names before."""
+
+    contacts: tuple[str, ...]
+
+
+@dataclass
 class ChangedMeanwhile(Fault):
     """The armature, its action or its keys are no longer what was analysed or sent to be solved.
 

@@ -62,3 +62,27 @@ def test_no_more_is_adapted_than_the_range(cut: bpy.types.Object) -> None:
     cut.hangtime.result.after = "CUT"
     assert bpy.ops.hangtime.adapt() == {"FINISHED"}
     assert current_action(cut).frame_range.to_tuple() == tuple(adapted.frames[[0, -1]])
+
+
+def test_what_was_changed_about_contacts_goes_with_a_take_that_is_moved(
+    jump: bpy.types.Object,
+) -> None:
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    jump.hangtime.stances["ground 2"].forward = 0.2
+    jump.location.x += 2.0
+    bpy.context.view_layer.update()
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert jump.hangtime.stances["ground 2"].forward == pytest.approx(0.2, abs=1e-4)
+    assert jump.hangtime.stances["ground 2"].turn == pytest.approx(0.0, abs=1e-4)
+
+
+def test_changes_of_contacts_that_are_not_found_any_more_are_told_and_stop_an_update(
+    adapted: bpy.types.Object,
+) -> None:
+    settings, made = adapted.hangtime, adapted.hangtime.adapted
+    assert settings.stances["ground 2"].up > 0.0
+    settings.first_frame, settings.last_frame = 60, 150  # before the landing
+    with pytest.raises(RuntimeError, match=r"changed about Left toe 2.* is gone"):
+        bpy.ops.hangtime.update()
+    assert settings.analysed
+    assert settings.adapted == made
