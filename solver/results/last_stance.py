@@ -4,12 +4,12 @@ import numpy as np
 
 from ..data.stance_move import StanceMove
 from ..stages.implicit import Adaptation
-from ..stages.warm_start import Standing, stance_moves
+from ..stages.warm_start import Standing, end_move, stance_moves
 
 
 def last_stance_move(adaptation: Adaptation) -> StanceMove | None:
-    """The least-squares rigid move of the last ground phase's contacts, at its end; None where
-    no phase has contacts that were found.
+    """The least-squares rigid move of the contacts that stand where the last ground phase ends;
+    None where no phase has contacts that were found.
 
     From where the fit has them, so that what nobody moves stays to the last bit; to where the
     motion has them, which short of its target is on the way there.
@@ -23,7 +23,7 @@ def last_stance_move(adaptation: Adaptation) -> StanceMove | None:
     moves = stance_moves(schedule, setup.fitted, after, turns)
     if not moves:
         return None
-    last = moves[-1]
+    last = end_move(schedule, setup.fitted, after, moves[-1])
     phase = next(p for p in schedule.phases if p.start == last.start and p.end == last.end)
     px, py, pz = last.pivots[-1].tolist()
     x, y, z = np.asarray(last.shifts[-1]).tolist()

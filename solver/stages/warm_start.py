@@ -8,7 +8,7 @@ continuation, in several steps.
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,6 +24,7 @@ MAX_SHIFT_PER_STEP = 0.5  # m, of a continuation step
 MAX_SPEED_PER_STEP = 1.5  # m/s, by which a landing or a stance changes speed
 MAX_TURN_PER_STEP = np.radians(45.0)
 LOWEST_SAMPLES = 50  # of a contact's height on moving ground
+TOGETHER = 0.05  # s, within which both feet leave
 RIDE_RATE = 60.0  # Hz, at which the move of a stance on moving ground is sampled
 
 
@@ -170,6 +171,20 @@ def stance_moves(
         turned += float(move.turns[-1] - move.turns[0])
         moves.append(move)
     return tuple(moves)
+
+
+def end_move(
+    schedule: ContactSchedule, before: Standing, after: Standing, last: RigidMove
+) -> RigidMove:
+    """The move of what stands where the last of `stance_moves` ends: a foot that stepped on within
+    the stance may have been moved otherwise. A single point tells no turn, so the stance's counts.
+    """
+    inside = [i for i, c in enumerate(schedule.contacts) if c.end > last.start and not c.asked_for]
+    latest = max(schedule.contacts[i].end for i in inside)
+    mine = [i for i in inside if schedule.contacts[i].end > latest - TOGETHER]
+    end, turn = last.times[-1:], float(last.turns[-1])
+    move = _least_squares(last.start, last.end, end, mine, (before, after), turn)
+    return move if len(mine) > 1 else replace(move, turns=np.array([turn]))
 
 
 def _least_squares(

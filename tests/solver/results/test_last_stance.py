@@ -6,9 +6,12 @@ from math import radians
 
 import numpy as np
 import pytest
+from hangtime.solver.data.contacts import Contact, ContactSchedule
 from hangtime.solver.data.problem import MotionProblem, Pin
+from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.solver.results.last_stance import last_stance_move
 from hangtime.solver.stages.implicit import adapt
+from hangtime.solver.stages.warm_start import Standing, end_move, stance_moves
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 
 
@@ -40,3 +43,38 @@ def test_a_motion_short_of_its_target_takes_the_rest_along_as_far_as_it_goes() -
     assert move is not None
     assert 0.0 < adaptation.reached < 1.0
     assert move.shift[2] == pytest.approx(3.0 * adaptation.reached, rel=0.01)
+
+
+def standing(*ends: float) -> ContactSchedule:
+    """One stance of 1 s, of contacts that begin at once, 0.2 m apart along x."""
+    places = np.column_stack([0.2 * np.arange(len(ends)), np.zeros((len(ends), 2))])
+    contacts = tuple(
+        Contact(f"toe {k} 1", f"toe {k}", "toe", np.zeros(3), 0.0, end, place)
+        for k, (end, place) in enumerate(zip(ends, places, strict=True))
+    )
+    return ContactSchedule(contacts, 1.0, 0.0)
+
+
+def test_what_follows_goes_with_what_stands_at_the_end() -> None:
+    """A foot that stepped on was moved otherwise."""
+    schedule = standing(0.5, 1.0, 1.0)
+    before = np.array([contact.place for contact in schedule.contacts])
+    after = before + np.array([[0.0, 0.3, 0.0], [0.1, 0.0, 0.0], [0.1, 0.0, 0.0]])
+    standings = Standing.still(before), Standing.still(after)
+    [whole] = stance_moves(schedule, *standings)
+    last = end_move(schedule, *standings, whole)
+    assert whole.turns[-1] != pytest.approx(0.0, abs=0.1)
+    assert last.turns[-1] == pytest.approx(0.0, abs=1e-9)
+    assert last.shifts[-1] == pytest.approx((0.1, 0.0, 0.0))
+
+
+def test_one_foot_turns_as_the_stance() -> None:
+    schedule = standing(0.5, 0.5, 1.0)
+    before = np.array([contact.place for contact in schedule.contacts])
+    after = before @ axis_rotation(2, 0.4).T
+    standings = Standing.still(before), Standing.still(after)
+    [whole] = stance_moves(schedule, *standings)
+    last = end_move(schedule, *standings, whole)
+    assert last.turns[-1] == pytest.approx(0.4)
+    assert last.pivots[-1] == pytest.approx(before[2])
+    assert last.pivots[-1] + last.shifts[-1] == pytest.approx(after[2])
