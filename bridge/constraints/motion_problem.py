@@ -27,14 +27,13 @@ from ..armature.poses import frames_per_second, metres_per_unit
 from ..properties.contact import HangtimeContact
 from ..properties.settings import HangtimeSettings
 from ..properties.stances import place
-from ..recipe.problem import parse_recipe
 from ..repairs.stored import applied, of_recording, unreadable
 from ..repairs.unreadable import require_readable
 from ..rows.copying import resized
 from ..rows.held_contacts import UNMOVED, HeldContact, found_again, frame_of, moves
 from ..rows.phases import phases_of, unseen_frames
 from ..scene.members import ground_members, present_members
-from ..takes.options import loop_options
+from ..takes.options import loop_options, text_of
 from .bone_mapping import chosen_parts
 from .requests import joined, requests_of
 
@@ -155,9 +154,9 @@ def _requests(
     armature: Any = settings.id_data
     listed = requests_of(settings, armature, span)
     listed = replace(listed, clears=_clears(settings, scene))
-    if settings.requests is not None:
-        text = settings.requests
-        listed = joined(listed, parse_recipe(text.as_string(), text.name).problem.requests)
+    text = text_of(settings)
+    if text is not None:
+        listed = joined(listed, text.problem.requests)
     solution = replace(
         listed.solution,
         keep_times=listed.solution.keep_times or settings.keep_times,

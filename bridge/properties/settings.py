@@ -166,8 +166,8 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     requests: chosen(
         target(
             "Requests",
-            "A text with limits, poses, torques, loads and whatever else a recipe may "
-            "hold; see the manual's page of recipes",
+            "A text with limits, poses, torques, loads and whatever else a recipe may ask "
+            "for beside what the panels have; see the manual's page of recipes",
             type=bpy.types.Text,
         )
     )

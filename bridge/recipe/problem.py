@@ -105,6 +105,21 @@ TOP_KEYS = (
     *REQUEST_KEYS,
     RESULT.header,
 )
+# What a text of the .blend file that the armature points to may hold; the panels have the rest.
+TEXT_KEYS = (*REQUEST_KEYS, RESULT.header, KEYS.header, LOOP.header)
+INSTEAD = {  # of keys that are not among these
+    "clip": "the recording is the armature's action",
+    "frames": "the panel Recording has the frame range",
+    RECORDING.header: "the panel Recording has the repairs",
+    **dict.fromkeys(("mass", "height"), "the panel Character has it"),
+    "bones": "the panel Bones has them",
+    "mass_table": "the panel Bones has it",
+    PIN.header: "a stance of the panel Contacts has the landing",
+    **dict.fromkeys((CONTACT.header, ADDED.header), "the panel Contacts has its frames"),
+    OBJECT: "the panel World has the surfaces",
+    EXPORT.header: "the panel Export has the file",
+    "good_enough": "the panel Solve has it, under Advanced",
+}
 STATURE = NumberRange(
     f"from {STATURES[0]:g} to {STATURES[1]:g} m, as people are",
     lambda value: STATURES[0] <= value <= STATURES[1],
@@ -154,6 +169,20 @@ def parse_recipe(text: str, path: str = "recipe") -> Recipe:
     """
     values, lines = recipe_values(text, path)
     return recipe_of(values, Source(path, lines))
+
+
+def parse_text(text: str, name: str) -> Recipe:
+    """The recipe in a text of the .blend file, in which `TEXT_KEYS` count.
+
+    What does not count is refused, for whoever writes it believes that it does. Raises BadRecipe.
+    """
+    values, lines = recipe_values(text, name)
+    source = Source(name, lines)
+    for key in values:
+        if key in TOP_KEYS and key not in TEXT_KEYS:
+            instead = f"; here {INSTEAD[key]}" if key in INSTEAD else ""
+            source.refuse((key,), f'"{key}" counts in a recipe\'s file only{instead}')
+    return recipe_of(values, source)
 
 
 def recipe_of(values: dict[str, Any], source: Source) -> Recipe:

@@ -15,19 +15,18 @@ from ...bridge.keys.events import events_of
 from ...bridge.keys.written import KeyedAction, choose_keys
 from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
 from ...bridge.recipe.keys import KeyOptions
-from ...bridge.recipe.problem import parse_recipe
 from ...bridge.recipe.result import ResultOptions
 from ...bridge.rows.choices import KeyChoice
+from ...bridge.takes.options import text_of
 from ...solver.worker.protocol import Adapted
 from ..words.report_text import keys_line
 
 
 def key_options(settings: HangtimeSettings) -> KeyOptions:
     """The options; [keys] in the armature's text go before the panel. Raises BadRecipe."""
-    text = settings.requests
-    stated = None if text is None else parse_recipe(text.as_string(), text.name).keys
-    if stated is not None:
-        return stated
+    text = text_of(settings)
+    if text is not None and text.keys is not None:
+        return text.keys
     panel = settings.result_keys
     # As the panel shows it: Blender's single precision is not what a person asked for.
     angle = radians(round(degrees(panel.angle), 4))

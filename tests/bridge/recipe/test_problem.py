@@ -9,6 +9,7 @@ from hangtime.bridge.recipe.problem import (
     PARTS,
     locate,
     parse_recipe,
+    parse_text,
     read_recipe_text,
     write_recipe,
 )
@@ -123,6 +124,16 @@ def test_keys_are_read_and_not_asked_for_by_default() -> None:
     with pytest.raises(BadRecipe) as fault:
         parse_recipe('[keys]\non = "fewest"\n')
     assert fault.value.line == 2
+
+
+def test_what_a_text_of_the_blend_file_has_no_say_in_is_refused_by_its_key() -> None:
+    heard = parse_text('[keys]\non = "reduced"\n[loop]\n[result]\n[solution]\nsolid = false\n', "x")
+    assert None not in (heard.keys, heard.loop, heard.result)
+    assert not heard.problem.requests.solution.solid
+    with pytest.raises(BadRecipe, match='"clip" counts'):
+        parse_text(FULL, "Requests")
+    with pytest.raises(BadRecipe, match='did you mean "pin"'):
+        parse_text("[[pins]]\n", "Requests")
 
 
 def test_json_says_the_same() -> None:

@@ -284,6 +284,8 @@ def test_a_result_for_keys_that_changed_meanwhile_is_thrown_away(
         ('[[torque]]\nname = "Weak"\nbones = ["Tail"]\nbound = 5\n', "Weak.*Tail"),
         ('[[cone]]\nbone = "LeftArm"\n', "line 1"),
         ('[[pose]]\nname = "Tuck"\nphase = "flight 7"\n', "Tuck.*flight 7"),
+        ('# A landing\n[[pin]]\nphase = "ground 2"\n', 'Requests, line 2: "pin" .*Contacts'),
+        ("[loop]\n[recording]\nscale = 2\n", 'Requests, line 2: "recording"'),
     ],
 )
 def test_a_wrong_request_is_said_and_changes_nothing(
