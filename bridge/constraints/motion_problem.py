@@ -8,13 +8,13 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import replace
-from math import isclose
+from math import isclose, isfinite
 from typing import Any
 
 import numpy as np
 
 from ...solver.data.contacts import Contact, ContactSchedule, Interval, Phase, PhaseKind, numbered
-from ...solver.data.faults import EmptyRange, UnreadableRepairs
+from ...solver.data.faults import EmptyRange, PlacedNowhere, UnreadableRepairs
 from ...solver.data.problem import AddedContact, ContactEdit, MassTable, MotionProblem, Pin
 from ...solver.data.recording import POSE_TOLERANCE, Recording, Skin, digest
 from ...solver.data.requests import Clear, Requests
@@ -112,12 +112,12 @@ def problem_of(
     with_contacts: whether corrections, pins and surfaces count; an analysis starts without them.
     held: name of a contact that is pinned even where it was found, for of a long take what is
     solved is what pins are about, and a drag's shall be that before the mouse has moved.
-    Raises EmptyRange for a contact that ends before it begins, UnreadableRepairs,
+    Raises PlacedNowhere, EmptyRange for a contact that ends before it begins, UnreadableRepairs,
     UnreadableText, BadRecipe, and as `requests_of`.
     """
     armature: Any = settings.id_data
     if with_contacts:
-        _require_ordered(settings)
+        _require_in_order(settings)
         require_readable(armature)
     span = span_of(settings, recording)
     repairs = applied(settings) if of_recording(armature) else Repairs()
@@ -190,9 +190,11 @@ def _clears(settings: HangtimeSettings, scene: tuple[SceneObject, ...]) -> tuple
     )
 
 
-def _require_ordered(settings: HangtimeSettings) -> None:
-    """Without a word the solver would leave such a contact out."""
+def _require_in_order(settings: HangtimeSettings) -> None:
+    """Without a word the solver would leave such a contact out, or where it was recorded."""
     for row in settings.contacts:
+        if row.used and not all(map(isfinite, (*row.at, row.start_frame, row.end_frame))):
+            raise PlacedNowhere(row.name)
         if row.used and row.end_frame < row.start_frame:
             raise EmptyRange(row.name, row.start_frame, row.end_frame)
 

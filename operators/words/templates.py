@@ -266,6 +266,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "{known:names}.",
     faults.EmptyRange: "“{request}” ends at frame {last:g}, before it begins at frame {first:g}; "
     "swap them.",
+    faults.PlacedNowhere: "The contact “{request}” has a place or a frame that is no number; press "
+    "Put Back for its stance (panel Contacts) or give it other frames.",
     faults.ReturnTooEarly: "The take is to be back by frame {frame:g}, but is adapted until frame "
     "{last:g}; choose a later frame.",
     faults.NoNewSlot: "The result cannot be a new slot of “{action}”: {why}. Choose New "

@@ -69,6 +69,7 @@ from .requests import NotAboveZero as NotAboveZero
 from .requests import NothingTouches as NothingTouches
 from .requests import OutOfReach as OutOfReach
 from .requests import PeakTooLow as PeakTooLow
+from .requests import PlacedNowhere as PlacedNowhere
 from .requests import PoseHeld as PoseHeld
 from .requests import ReturnTooEarly as ReturnTooEarly
 from .requests import RootHasNoJoint as RootHasNoJoint

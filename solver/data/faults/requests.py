@@ -253,6 +253,10 @@ class EmptyRange(RequestFault):
     last: float
 
 
+class PlacedNowhere(RequestFault):
+    """A contact whose place or frames are NaN or infinite, as a script can set them."""
+
+
 @dataclass
 class CrossedBounds(RequestFault):
     """A request's least value is above its greatest; both in `unit`."""

@@ -62,6 +62,23 @@ def test_a_stance_turns_about_its_middle(analysed: bpy.types.Object) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("number", [float("nan"), float("inf")])
+def test_a_place_that_is_no_number_is_refused_and_put_back(
+    analysed: bpy.types.Object, number: float
+) -> None:
+    """As a script sets it; it passed for a landing that nobody had moved."""
+    settings = analysed.hangtime
+    settings.stances["ground 2"].forward = number
+    with pytest.raises(RuntimeError, match="toe 2” has a place or a frame that is no number"):
+        bpy.ops.hangtime.adapt()
+    settings.active_contact = settings.contacts.find(landing(settings)[0].name)
+    assert bpy.ops.hangtime.put_back() == {"FINISHED"}
+    assert pins(analysed) == {}
+    landing(settings)[0].end_frame = number
+    with pytest.raises(RuntimeError, match="has a place or a frame that is no number"):
+        bpy.ops.hangtime.adapt()
+
+
 def test_an_empty_carries_its_stance(analysed: bpy.types.Object) -> None:
     settings = analysed.hangtime
     first, second = landing(settings)[:2]
