@@ -31,7 +31,7 @@ from ..repairs.stored import applied, of_recording, unreadable
 from ..repairs.unreadable import require_readable
 from ..rows.copying import resized
 from ..rows.held_contacts import UNMOVED, HeldContact, found_again, frame_of, moves
-from ..rows.phases import phases_of, unseen_frames
+from ..rows.phases import SAME, phases_of, unseen_frames
 from ..scene.members import ground_members, present_members
 from ..takes.options import loop_options, text_of
 from .bone_mapping import chosen_parts
@@ -39,6 +39,8 @@ from .requests import joined, requests_of
 
 _METRES_PER_MM = 1e-3
 SAME_RATE = 1e-6  # relative; what a scene stores is float32
+
+_Span = tuple[float, float]
 
 
 def wanted_range(settings: HangtimeSettings) -> tuple[float, float] | tuple[None, None]:
@@ -89,6 +91,15 @@ def rates_since(settings: HangtimeSettings) -> tuple[float, float] | None:
     the same, or an earlier version did not keep them."""
     before, now = float(settings.analysed_rate), frames_per_second(current_scene())
     return (before, now) if before and not isclose(before, now, rel_tol=SAME_RATE) else None
+
+
+def spans_since(settings: HangtimeSettings, recording: Recording) -> tuple[_Span, _Span] | None:
+    """First and last scene frame that were analysed, and that are to be adapted now; None where
+    they are the same, or an earlier version did not keep them."""
+    before, now = tuple(map(float, settings.analysed_span)), span_of(settings, recording)
+    if not any(before) or all(abs(a - b) < SAME for a, b in zip(before, now, strict=True)):
+        return None
+    return (before[0], before[1]), now
 
 
 def repaired_since(settings: HangtimeSettings) -> bool:
@@ -277,6 +288,7 @@ def write_analysis(
     first, rate = span_of(settings, recording)[0], frames_per_second(current_scene())
     settings.measured_height = found.height
     settings.analysed, settings.analysed_rate = analysis_key(settings, recording), rate
+    settings.analysed_span = span_of(settings, recording)
     unseen = [[first + u.start * rate, first + u.end * rate] for u in found.schedule.unseen]
     settings.unseen = json.dumps(unseen) if unseen else ""
     for stance, (name, axes) in zip(

@@ -26,7 +26,7 @@ from ..rows.row import (
     declared,
     hidden,
 )
-from ..rows.stored import angle, boolean, number, target, text, whole
+from ..rows.stored import angle, boolean, number, target, text, vector, whole
 from . import stances
 from .body_change import CLASSES as BODY_CHANGE_CLASSES
 from .body_change import HangtimeBodyChange
@@ -118,6 +118,8 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     fit_quality: hidden(text())
     analysed: hidden(text())  # digest
     analysed_rate: hidden(number())  # frames/s of the scene then; 0 where no one kept it
+    # First and last scene frame that were analysed; both 0 where no one kept them.
+    analysed_span: hidden(vector(size=2))
     unseen: hidden(text())  # JSON: [first, last frame] of each span that something unseen carries
     repairs: hidden(text())  # JSON: those that count, see bridge/repairs
     findings: bpy.props.CollectionProperty(type=HangtimeFinding, override=OVERRIDABLE_LIST)

@@ -18,6 +18,7 @@ from ...bridge.constraints.motion_problem import (
     rates_since,
     repaired_since,
     span_of,
+    spans_since,
     wanted_range,
 )
 from ...bridge.controls.aimed import aimed_bones
@@ -45,6 +46,7 @@ from ...solver.data.faults import (
     FramesReversed,
     HeldBones,
     RateChanged,
+    SpanChanged,
 )
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import BEYOND, Recording
@@ -185,8 +187,8 @@ class UseBestOperator(TaskOperator, bpy.types.Operator):
 def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     """The motion problem that the settings state, with the recording as it is.
 
-    Raises any Fault of reading and of a rig that cannot be written to, AimedBone, and RateChanged
-    or ChangedMeanwhile where it is not what was analysed.
+    Raises any Fault of reading and of a rig that cannot be written to, AimedBone, and RateChanged,
+    SpanChanged or ChangedMeanwhile where it is not what was analysed.
     """
     armature = required_armature(context)
     settings = settings_of(armature)
@@ -219,13 +221,16 @@ def followed_problem(settings: HangtimeSettings, asked: Asked, held: str) -> Mot
 
 
 def _require_analysed(armature: bpy.types.Object, recording: Recording) -> None:
-    """Raises RateChanged, ChangedMeanwhile."""
+    """Raises RateChanged, SpanChanged, ChangedMeanwhile."""
     settings = settings_of(armature)
     if analysis_is_of(settings, recording):
         return
-    rates = None if repaired_since(settings) else rates_since(settings)  # which sets the clock, too
-    if rates is not None:
-        raise RateChanged(*rates, while_solving=False)
+    if not repaired_since(settings):  # which sets the clock and cuts frames off, too
+        rates, spans = rates_since(settings), spans_since(settings, recording)
+        if rates is not None:
+            raise RateChanged(*rates, while_solving=False)
+        if spans is not None:
+            raise SpanChanged(*spans)
     raise ChangedMeanwhile(armature.name, while_solving=False)
 
 

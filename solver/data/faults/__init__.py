@@ -36,6 +36,7 @@ from .recordings import OddScale as OddScale
 from .recordings import OptionNotTaken as OptionNotTaken
 from .recordings import OutsideKeys as OutsideKeys
 from .recordings import RateChanged as RateChanged
+from .recordings import SpanChanged as SpanChanged
 from .recordings import TextCure as TextCure
 from .recordings import Treadmill as Treadmill
 from .recordings import UnknownClipFormat as UnknownClipFormat

@@ -315,6 +315,14 @@ class LostEdits(Fault):
 
 
 @dataclass
+class SpanChanged(Fault):
+    """Other frames are to be adapted than were analysed; first and last scene frame."""
+
+    before: tuple[float, float]
+    now: tuple[float, float]
+
+
+@dataclass
 class ChangedMeanwhile(Fault):
     """The armature, its action or its keys are no longer what was analysed or sent to be solved.
 

@@ -324,7 +324,7 @@ def test_a_frame_rate_that_changed_is_named(analysed: bpy.types.Object) -> None:
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
     curves_of(analysed)[0].keyframe_points[150].co[1] += 0.1
     with pytest.raises(
-        RuntimeError, match="its keys, its repairs or the scene's frame rate changed"
+        RuntimeError, match=r"its keys, repairs, .* or the scene's frame rate or unit scale changed"
     ):
         bpy.ops.hangtime.fit()
 
@@ -333,8 +333,42 @@ def test_a_frame_rate_that_no_one_kept_may_be_what_changed(analysed: bpy.types.O
     """In files of earlier versions."""
     analysed.hangtime.property_unset("analysed_rate")
     bpy.context.scene.render.fps = 24
-    with pytest.raises(RuntimeError, match="or the scene's frame rate changed since the analysis"):
+    with pytest.raises(
+        RuntimeError, match=r"or the scene's frame rate .*changed since the analysis"
+    ):
         bpy.ops.hangtime.fit()
+
+
+def test_frames_that_were_not_analysed_are_named(analysed: bpy.types.Object) -> None:
+    """As ticking, or dragging, Frame Range chooses them. At the analysis' own all is as before."""
+    settings = analysed.hangtime
+    settings.last_frame = LAST - 10
+    chosen = f"frames {FIRST} to {LAST - 10} are to be adapted now, but {FIRST} to {LAST} were"
+    with pytest.raises(RuntimeError, match=chosen):
+        bpy.ops.hangtime.adapt()
+    settings.last_frame, settings.use_range = LAST, False
+    with pytest.raises(RuntimeError, match=f"but {FIRST} to {LAST} were analysed"):
+        bpy.ops.hangtime.adapt()
+    settings.use_range = True
+    assert bpy.ops.hangtime.fit() == {"FINISHED"}
+
+
+def loop_ticked(armature: bpy.types.Object) -> None:
+    armature.hangtime.loop.use = True
+
+
+def smaller_units(_armature: bpy.types.Object) -> None:
+    bpy.context.scene.unit_settings.scale_length = 0.5
+
+
+@pytest.mark.parametrize(
+    ("change", "named"), [(loop_ticked, "Loop"), (smaller_units, "unit scale")]
+)
+def test_what_else_an_analysis_depends_on_is_named(
+    analysed: bpy.types.Object, change: Callable[[bpy.types.Object], None], named: str
+) -> None:
+    change(analysed)
+    assert_refused(bpy.ops.hangtime.adapt, analysed, named)
 
 
 def test_an_action_may_be_renamed_after_the_analysis(analysed: bpy.types.Object) -> None:
