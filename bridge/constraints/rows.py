@@ -33,7 +33,9 @@ def add_constraint(
     if kind.bones is BoneUse.TOUCHING:
         touching = {contact.bone for contact in settings.contacts}
         bones = [bone for bone in bones if bone in touching]
-    set_bones(row, () if kind.bones is BoneUse.NONE else bones)
+    if kind.bones is BoneUse.NONE:
+        bones = ()
+    set_bones(row, bones)
     if kind.bones is BoneUse.ONE and not bones:
         row.bones.add()  # to be chosen
     aim_at(settings, row, kind, frame)

@@ -218,6 +218,15 @@ def test_adding_with_selected_bones_makes_a_row_each(rig: bpy.types.Object) -> N
     assert len(asked(rig).points) == 4
 
 
+def test_a_row_without_bones_is_called_by_its_phase_whatever_is_selected(
+    rig: bpy.types.Object,
+) -> None:
+    select(rig, "foot")
+    for kind in ("TIMING", "HOLD"):
+        bpy.ops.hangtime.add_constraint(kind=kind)
+    assert names(rig) == ["Flight 1 Timing", "Hold"]
+
+
 def test_without_phases_a_new_row_holds_around_the_playhead(rig: bpy.types.Object) -> None:
     rig.hangtime.contacts.clear()
     select(rig, "shin")
