@@ -5,20 +5,22 @@ import bpy
 from ...bridge.accessors import current_action, current_scene, present, source_of
 from ...bridge.action_slots import lost_slot
 from ...bridge.armature.actions import recorded_action, show
+from ...bridge.armature.played import why_no_action
 from ...bridge.armature.strips import remove_strips
 from ...bridge.fake_users import unguard
 from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.scene.played_end import play_what_is_left
 from ...bridge.takes.takes import bake_shown, results_from
 from ...bridge.takes.write_result import remove_slot
+from ...solver.data.faults import NoArmature
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
-from .common import BUSY, TWEAK_MODE, at_work, chosen_armature, required_armature, tweaked
+from .common import BUSY, TWEAK_MODE, at_work, chosen_armature, required_armature, said, tweaked
 from .session import session
 
 NOTHING_ADAPTED = "Nothing has been adapted yet"
 BESIDE = "The armature {} performs the result beside the recording; there is nothing to switch"
-NOT_SHOWN = "The recording is shown; show the result that is to go"
+NOT_SHOWN = "{} is shown; show the result that is to go"
 NOT_COMPARED = "Nothing that {} was made from is there to compare it with"
 BUILT_ON = "{} was made from this result; discard that one first"
 REPORT = "{} report"
@@ -62,6 +64,14 @@ def performer_of(armature: bpy.types.Object) -> bpy.types.Object:
     """Who performs the result: the armature, or one of other proportions."""
     performer: bpy.types.Object | None = action_settings(present(result_of(armature))).performer
     return performer if performer is not None else armature
+
+
+def _shown(armature: bpy.types.Object, result: bpy.types.Action) -> str:
+    """What an armature shows in the place of a result."""
+    shown = current_action(armature)
+    if shown is None:
+        return "No action"
+    return "The recording" if shown == source_of(result) else shown.name
 
 
 class _OfResult(PolledOperator):
@@ -117,7 +127,11 @@ class ShowRecordingOperator(PolledOperator, bpy.types.Operator):
     @classmethod
     def obstacle(cls, context: bpy.types.Context) -> str | None:
         armature = chosen_armature(context)
-        if armature is None or current_action(armature) == recorded_action(armature):
+        if armature is None:
+            return said(NoArmature(None))
+        if current_action(armature) is None:
+            return said(why_no_action(armature))
+        if current_action(armature) == recorded_action(armature):
             return "The recording is what is shown"
         return TWEAK_MODE if tweaked(armature) else None
 
@@ -199,7 +213,7 @@ class DiscardOperator(_OfSettledResult, bpy.types.Operator):
             return why
         armature, result = required_armature(context), required_result(context)
         if performer_of(armature) == armature and current_action(armature) != result:
-            return NOT_SHOWN
+            return NOT_SHOWN.format(_shown(armature, result))
         built = results_from(result)
         return BUILT_ON.format(built[0].name) if built else None
 

@@ -368,6 +368,19 @@ def test_what_is_discarded_is_what_is_shown(armature: bpy.types.Object) -> None:
     assert armature.hangtime.contacts[0].at[2] == pytest.approx(0.2)
 
 
+def test_what_is_shown_in_the_place_of_a_result_is_named(armature: bpy.types.Object) -> None:
+    recording = current_action(armature)
+    adapt(armature, 10, 20, 0.1)
+    shown = {"No action": None, "The recording": recording, "Walk": bpy.data.actions.new("Walk")}
+    for told, action in shown.items():
+        armature.animation_data.action = action
+        with pytest.raises(RuntimeError, match=f"{told} is shown; show the result"):
+            bpy.ops.hangtime.discard()
+    armature.animation_data.action = None
+    with pytest.raises(RuntimeError, match="assign it the action that holds the recording"):
+        bpy.ops.hangtime.show_recording()
+
+
 def test_a_result_without_its_recording_is_discarded(armature: bpy.types.Object) -> None:
     recording = current_action(armature)
     adapt(armature, 10, 20, 0.1)
