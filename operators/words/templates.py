@@ -249,6 +249,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "at least, or let it be no part of the environment.",
     faults.TakenName: "“{request}” is called like a contact that was found; give it a name of its "
     "own.",
+    faults.NamedAsPhase: "The hold “{request}” has the name of a phase; give it another, such as "
+    "“Held”, so that constraints can tell them apart.",
     faults.TimedTwice: "“{request}” is the second to say how long “{phase}” takes; keep one.",
     faults.TooMuchTime: "With “{request}” the motion would be {seconds:.4g} s longer than it was "
     "recorded, and {most:g} s are the most that can be added; ask for less.",

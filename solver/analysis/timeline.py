@@ -12,8 +12,15 @@ from itertools import pairwise
 import numpy as np
 
 from ..arrays import FloatArray
-from ..data.contacts import ContactSchedule, Interval, Phase
-from ..data.faults import BadTiming, BesideFrames, TimedTwice, TooMuchTime, UnknownPhaseIn
+from ..data.contacts import ContactSchedule, Interval, Phase, is_phase_name
+from ..data.faults import (
+    BadTiming,
+    BesideFrames,
+    NamedAsPhase,
+    TimedTwice,
+    TooMuchTime,
+    UnknownPhaseIn,
+)
 from ..data.requests import Hold, Moment, PhaseTiming, When
 
 MIN_PHASE_DURATION = 0.03  # s
@@ -163,8 +170,8 @@ def timeline(
 ) -> Timeline:
     """Time warp from new phase durations and held frames.
 
-    schedule: of the recording. Raises UnknownPhaseIn, BadTiming, BesideFrames, TimedTwice,
-    TooMuchTime.
+    schedule: of the recording. Raises UnknownPhaseIn, BadTiming, BesideFrames, NamedAsPhase,
+    TimedTwice, TooMuchTime.
     """
     phases = {phase.name: phase for phase in schedule.phases}
     wanted: dict[str, float] = {}
@@ -181,6 +188,8 @@ def timeline(
     edges = sorted({0.0, schedule.duration, *(p.end for p in phases.values())})
     stops: dict[float, list[Hold]] = {}
     for hold in holds:
+        if is_phase_name(hold.name):  # of another clip's too: edits are made for several
+            raise NamedAsPhase(hold.name)
         at = (hold.frame - first_frame) / rate
         at = next((edge for edge in edges if abs(edge - at) < 1e-6), at)
         if not 0.0 < at <= schedule.duration:

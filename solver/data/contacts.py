@@ -141,6 +141,11 @@ class Phase:
         return f"{self.kind.value} {self.number}"
 
 
+def is_phase_name(name: str) -> bool:
+    """Whether a name is read as that of a phase, whatever its capitals and spaces."""
+    return COUNTED.fullmatch(" ".join(name.casefold().split())) is not None
+
+
 def phase_title(name: str) -> str:
     """A phase's name as a line begins with it; a held frame's is the artist's, and stays."""
     return name.capitalize() if COUNTED.fullmatch(name) else name

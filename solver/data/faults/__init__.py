@@ -59,6 +59,7 @@ from .requests import DependentRows as DependentRows
 from .requests import EmptyRange as EmptyRange
 from .requests import FreePoint as FreePoint
 from .requests import JoinedPhase as JoinedPhase
+from .requests import NamedAsPhase as NamedAsPhase
 from .requests import NamedTwice as NamedTwice
 from .requests import NeedsTorques as NeedsTorques
 from .requests import NoBoneChosen as NoBoneChosen

@@ -183,6 +183,11 @@ class TakenName(RequestFault):
     """A point that the world shall push at is called like a contact that was found."""
 
 
+class NamedAsPhase(RequestFault):
+    """A held frame is called as a phase is; what another request says of that name could be about
+    either."""
+
+
 @dataclass
 class TimedTwice(RequestFault):
     """A second request for the duration of one phase."""

@@ -4,10 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hangtime.operators.words.messages import sentence
 from hangtime.solver.analysis.timeline import Stretch, Timeline, TimeWarp, active_interval, timeline
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.contacts import Contact, ContactSchedule, Interval
-from hangtime.solver.data.faults import BadTiming, BesideFrames, TooMuchTime, UnknownPhaseIn
+from hangtime.solver.data.faults import (
+    BadTiming,
+    BesideFrames,
+    NamedAsPhase,
+    TooMuchTime,
+    UnknownPhaseIn,
+)
 from hangtime.solver.data.requests import ALWAYS, Hold, Moment, PhaseTiming, When
 from hypothesis import given
 from hypothesis import strategies as st
@@ -239,6 +246,14 @@ def test_holds_of_no_time_are_refused_by_name(seconds: float) -> None:
     with pytest.raises(BadTiming) as caught:
         made(holds=(Hold("hang", frame(0.5), seconds),))
     assert caught.value.request == "hang"
+
+
+@pytest.mark.parametrize("name", ["flight 1", "Ground 2", " FLIGHT  7"])
+def test_a_hold_named_as_a_phase_is_refused(name: str) -> None:
+    """It took what was asked of that phase."""
+    with pytest.raises(NamedAsPhase) as caught:
+        made(holds=(Hold(name, frame(0.5), 0.4),))
+    assert sentence(caught.value).startswith(f"The hold “{name}” has the name of a phase;")
 
 
 @pytest.mark.parametrize("at", [-0.1, 1.3])
