@@ -47,7 +47,7 @@ def find_footing(
     None for those with the floor alone.
     """
     schedule = find_contacts(performance) if schedule is None else schedule
-    found = [_floor(performance), _flicker(performance, schedule)]
+    found = [_floor(performance, schedule), _flicker(performance, schedule)]
     notes = [
         (FindingKind.UNSEEN_SUPPORT, schedule.unseen),
         (FindingKind.BEGINS_IN_AIR, tuple(f for f in schedule.flights if f.start == 0.0)),
@@ -60,8 +60,11 @@ def find_footing(
     return [finding for finding in found if finding is not None] + told
 
 
-def _floor(performance: Performance) -> Finding | None:
-    """Feet that stand on another height than the world's 0."""
+def _floor(performance: Performance, schedule: ContactSchedule) -> Finding | None:
+    """Feet that stand on another height than the world's 0. Where nothing stands there is no floor:
+    that of contacts is then the lowest that feet reach in the air."""
+    if not schedule.contacts and not schedule.unseen:
+        return None
     _, floor = contact_points(performance)
     if abs(floor) <= FLOOR_OFF:
         return None

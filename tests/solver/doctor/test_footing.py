@@ -12,7 +12,7 @@ from hangtime.devtools.doctor.damages import (
     sliding,
 )
 from hangtime.devtools.doctor.measure import apart
-from hangtime.solver.analysis.performance import perform
+from hangtime.solver.analysis.performance import find_contacts, perform
 from hangtime.solver.body.character import build_character
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.examination.repair import repaired
@@ -39,6 +39,18 @@ def test_height_and_drift_are_told_and_taken_out(damage: Damage, metres: float) 
     assert found.kind is damage.kind
     assert found.remedy is not None
     assert apart(repaired(damaged.recording, found.remedy), damaged.original) < metres
+
+
+@pytest.mark.parametrize(("landed", "floors"), [(False, 0), (True, 1)])
+def test_who_only_flies_stands_on_no_height(landed: bool, floors: int) -> None:
+    """Who lands at its end does."""
+    high = raised(0.4).of(jump()).recording
+    (flight,) = find_contacts(perform(high, character())).flights
+    first, last = high.frames[0] + high.rate * np.array([flight.start, flight.end])
+    part = high.window(first + 2.0, high.frames[-1] if landed else last - 2.0)
+    found = find_footing(perform(part, character()))
+    assert [f.kind for f in found if not f.kind.note] == [FindingKind.FLOOR] * floors
+    assert FindingKind.BEGINS_IN_AIR in {f.kind for f in found}
 
 
 @pytest.mark.parametrize("speed", [0.05, 0.1, -0.1])
