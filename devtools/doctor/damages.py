@@ -93,6 +93,19 @@ def begun_at_rest(frames: int) -> Damage:
     return Damage(f"rest pose, {frames} frames", FindingKind.BIND_POSE, do)
 
 
+def ended_at_rest(frames: int) -> Damage:
+    """The rest pose on the last frames."""
+
+    def do(recording: Recording, _: np.random.Generator) -> Damaged:
+        rotations, heads = recording.rotations.copy(), recording.heads.copy()
+        rotations[-frames:] = np.stack([bone.rotation for bone in recording.bones])
+        heads[-frames:] = np.stack([bone.head for bone in recording.bones])
+        damaged = replace(recording, rotations=rotations, heads=heads)
+        return Damaged(damaged, recording.part(slice(None, -frames)))
+
+    return Damage(f"rest pose on the last {frames} frames", FindingKind.BIND_POSE, do)
+
+
 def spiked(degrees: float) -> Damage:
     """Five joints off, each on one frame."""
 
@@ -371,6 +384,7 @@ DAMAGES = (
     sized(0.01, "metres as centimetres"),
     *map(lain, (UpAxis.Y, UpAxis.X)),
     *map(begun_at_rest, (1, 5)),
+    ended_at_rest(5),
     *map(spiked, (20.0, 45.0, 120.0)),
     *map(burst, (2, 5)),
     *map(joined, (0.1, 0.4)),

@@ -22,7 +22,7 @@ EXCHANGED = (
 # {clock}: how the recording is played. {end}: what hangs on the part and leaves its place.
 SENTENCES = {
     FindingKind.UP_AXIS: "The figure lies: another axis than Z points from its feet to its head.",
-    FindingKind.BIND_POSE: "The rest pose is held {where}, and the motion jumps from it.",
+    FindingKind.BIND_POSE: "The rest pose is held {where}, with a jump between it and the motion.",
     FindingKind.EXCHANGED_LEGS: f"The left and the right leg {EXCHANGED}",
     FindingKind.EXCHANGED_ARMS: f"The left and the right arm {EXCHANGED}",
     FindingKind.FLIP: "{part} is turned by half a turn {where}.",

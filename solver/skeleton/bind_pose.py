@@ -1,4 +1,7 @@
-"""A bind pose before the motion: exporters put the T pose, or rest pose, on the first frames."""
+"""A bind pose before the motion, or after it: exporters put the T pose, or rest pose, on the first
+frames, and some on the last."""
+
+from dataclasses import replace
 
 import numpy as np
 
@@ -34,6 +37,12 @@ def bind_frames(recording: Recording) -> int:
         if count and (angles_between(local[count - 1], local[count]) > JUMP).mean() > least:
             return count
     return 0
+
+
+def last_bind_frames(recording: Recording) -> int:
+    """How many frames at the end hold the rest pose, to which the motion jumps: seen backwards they
+    are the first."""
+    return bind_frames(replace(recording, rotations=recording.rotations[::-1]))
 
 
 def _between(first: FloatArray, second: FloatArray) -> FloatArray:

@@ -17,7 +17,7 @@ from ...data.faults import ClipTooShort, computable
 from ...data.recording import MIN_CLIP_DURATION, Recording, Skin
 from ...data.scaling import scaled_recording
 from ...data.scene import SceneObject
-from ...skeleton.bind_pose import bind_frames
+from ...skeleton.bind_pose import bind_frames, last_bind_frames
 from ..falls import FEWEST, LEAP_WINDOW, Spans, Trusted, find_leaps, person_factor
 from ..figure import figure_of
 from ..finding import Finding, FindingKind
@@ -212,9 +212,13 @@ def _require_length(recording: Recording) -> None:
 
 
 def _find_bind_pose(recording: Recording) -> Finding | None:
-    count = bind_frames(recording)
-    if count == 0:
+    """At both ends; at the last in what the first leaves, as what is told for it could be all."""
+    frames, first = recording.frames, bind_frames(recording)
+    last = last_bind_frames(recording.part(slice(first, None)))
+    if first + last == 0:
         return None
-    held = (float(recording.frames[0]), float(recording.frames[count - 1]))
-    remedy = Repairs(trim=count)
-    return Finding(FindingKind.BIND_POSE, float(count), "frames", (held,), remedy=remedy)
+    begins = [(float(frames[0]), float(frames[first - 1]))] if first else []
+    ends = [(float(frames[-last]), float(frames[-1]))] if last else []
+    remedy = Repairs(trim=first, trim_end=last)
+    held = float(first + last)
+    return Finding(FindingKind.BIND_POSE, held, "frames", (*begins, *ends), remedy=remedy)

@@ -12,7 +12,7 @@ from ...data.faults import NotBetweenFrames, NothingLeft
 from ...data.problem import Mend, MotionProblem
 from ...data.recording import Recording, Skin
 from ...data.scaling import scaled_recording
-from ...skeleton.bind_pose import bind_frames
+from ...skeleton.bind_pose import bind_frames, last_bind_frames
 from ...skeleton.mirror import mirrored
 from ..figure import Figure, figure_of
 from ..frames.exchanges import exchanged_back
@@ -61,15 +61,26 @@ def floated(recording: Recording, problem: MotionProblem, frame: float) -> tuple
 def _without_drift_as_asked(recording: Recording, problem: MotionProblem) -> Recording:
     """With its poses mended, and without drift."""
     if problem.mend:
-        held = bind_frames(recording)  # else the jump from the rest pose is smoothed into the rest
-        if problem.frames is None or recording.frames[held] <= problem.frames[0]:
-            recording = trimmed(recording, Repairs(trim=held))
-        recording = mended(recording, Repairs(mend=problem.mend), problem.bones)
+        moving = _without_rest_poses(recording, problem.frames)
+        recording = mended(moving, Repairs(mend=problem.mend), problem.bones)
     first = float(recording.frames[0]) if problem.frames is None else problem.frames[0]
     velocity = *problem.drift, problem.rise
     if any(velocity):
         begins = float(np.interp(first, recording.frames, recording.times))
         recording = _without_drift(recording, recording.times - begins, velocity)
+    return recording
+
+
+def _without_rest_poses(recording: Recording, asked: tuple[float, float] | None) -> Recording:
+    """Without those at its ends, as far as they are not among the frames that are asked for: the
+    jump between them and the motion would be smoothed into the rest. Of all frames those at the
+    beginning are none."""
+    held = bind_frames(recording)
+    if asked is None or recording.frames[held] <= asked[0]:
+        recording = trimmed(recording, Repairs(trim=held))
+    last = last_bind_frames(recording)
+    if asked is not None and asked[1] <= recording.frames[-1 - last]:
+        recording = trimmed(recording, Repairs(trim_end=last))
     return recording
 
 

@@ -9,6 +9,7 @@ from hangtime.devtools.doctor.damages import (
     begun_at_rest,
     burst,
     dropped,
+    ended_at_rest,
     exchanged,
     flipped,
     gap,
@@ -130,6 +131,24 @@ def test_the_rest_pose_is_left_out_before_all_else() -> None:
     diagnosis = diagnose(damaged.recording)
     assert [finding.kind for finding in diagnosis.findings] == [FindingKind.BIND_POSE]
     assert diagnosis.repairs == Repairs(trim=3)
+
+
+@pytest.mark.parametrize("frames", [1, 5])
+def test_the_rest_pose_at_the_end_is_left_out_likewise(frames: int) -> None:
+    """It was told as exchanged arms and a turn by half a turn."""
+    damaged = ended_at_rest(frames).of(jump())
+    diagnosis = diagnose(damaged.recording)
+    assert [finding.kind for finding in diagnosis.findings] == [FindingKind.BIND_POSE]
+    assert diagnosis.repairs == Repairs(trim_end=frames)
+    assert diagnosis.kept == (jump().frames[0], jump().frames[-1 - frames])
+
+
+def test_rest_poses_at_both_ends_are_one_finding() -> None:
+    damaged = ended_at_rest(2).of(begun_at_rest(3).of(jump()).recording)
+    (found,) = diagnose(damaged.recording).findings
+    assert (found.kind, found.remedy) == (FindingKind.BIND_POSE, Repairs(trim=3, trim_end=2))
+    first, last = jump().frames[0], jump().frames[-1]
+    assert found.frames == ((first, first + 2.0), (last - 1.0, last))
 
 
 def test_several_damages_are_mended_together() -> None:

@@ -2,10 +2,8 @@
 
 import numpy as np
 import pytest
-from hangtime.devtools.doctor.damages import (
-    rising,
-    sliding,
-)
+from hangtime.devtools.doctor.damages import ended_at_rest, noisy, rising, sliding
+from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.data.faults import (
     NothingLeft,
 )
@@ -29,9 +27,17 @@ def test_drift_is_taken_out_from_the_first_frame_that_is_asked_for_on() -> None:
     asked = MotionProblem(frames=(first + 60.0, last), drift=(0.24, 0.18), rise=0.1)
     slid = rising(0.1).of(sliding(0.3).of(jump()).recording).recording
     without = as_asked(slid, asked)
-    apart = without.heads - jump().heads
-    np.testing.assert_allclose(apart, np.broadcast_to(apart[0], apart.shape), atol=1e-9)
+    away = without.heads - jump().heads
+    np.testing.assert_allclose(away, np.broadcast_to(away[0], away.shape), atol=1e-9)
     np.testing.assert_allclose(without.heads[60], slid.heads[60], atol=1e-9)
+
+
+def test_a_rest_pose_at_the_end_is_not_smoothed_into_the_rest() -> None:
+    noise = noisy(3.0, 1.0).of(jump()).recording
+    damaged = ended_at_rest(4).of(noise)
+    asked = MotionProblem(frames=damaged.original.ends, mend=(Mend.NOISE,))
+    mended = as_asked(damaged.recording, asked)
+    assert apart(mended, as_asked(damaged.original, asked)) < 1e-9
 
 
 def test_repairs_are_left_out_one_by_one() -> None:

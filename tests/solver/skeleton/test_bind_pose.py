@@ -7,7 +7,7 @@ from hangtime.devtools.recordings import JUMP
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.local_poses import LocalPoses
 from hangtime.solver.numerics.rotations import rotation_matrix
-from hangtime.solver.skeleton.bind_pose import bind_frames
+from hangtime.solver.skeleton.bind_pose import bind_frames, last_bind_frames
 from hangtime.tests.helpers.clips import load_recording
 
 
@@ -27,8 +27,16 @@ def test_a_bind_pose_is_found_on_one_frame_and_on_several() -> None:
     assert [bind_frames(begun_at_rest(clip(), n)) for n in (1, 5)] == [1, 5]
 
 
+def test_a_bind_pose_after_the_motion_is_found_likewise() -> None:
+    backwards = replace(clip(), rotations=clip().rotations[::-1], heads=clip().heads[::-1])
+    for frames in (1, 5):
+        begun = begun_at_rest(backwards, frames)
+        ended = replace(begun, rotations=begun.rotations[::-1], heads=begun.heads[::-1])
+        assert (bind_frames(ended), last_bind_frames(ended)) == (0, frames)
+
+
 def test_a_recording_has_none() -> None:
-    assert bind_frames(clip()) == 0
+    assert (bind_frames(clip()), last_bind_frames(clip())) == (0, 0)
 
 
 def test_a_recording_that_is_all_at_rest_has_none() -> None:
