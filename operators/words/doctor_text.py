@@ -51,6 +51,8 @@ SENTENCES = {
     FindingKind.FLICKER: "{part} and others leave the floor for moments and come back {where}.",
     FindingKind.UNSEEN_SUPPORT: "Nothing touches, yet the body does not fall {where}: something "
     "carries it that the recording does not show.",
+    FindingKind.SKIDDING: "The feet that carry the body skid to another place {where}, as none "
+    "does under load but on what moves.",
     FindingKind.BEGINS_IN_AIR: "The clip begins in the air.",
     FindingKind.ENDS_IN_AIR: "The clip ends in the air.",
 }

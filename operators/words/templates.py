@@ -191,7 +191,7 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
         'Exchange Back; repair = ["exchanged legs"] in a recipe), or choose frames without it.',
         "From frame {first:g} to {last:g} the feet that carry the body skid to another place, as "
         "none does under load, so something unseen carries it meanwhile; correct their contacts, "
-        "or choose frames without it.",
+        "choose frames without it, or let what they ride on be ground in the panel World.",
     ),
     faults.UnseenSupports: "In frames {spans:spans} neither foot touches the ground, yet the body "
     "does not fall, so something unseen carries it (a box, a rail, a hand); choose frames without "

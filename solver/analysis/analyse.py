@@ -39,6 +39,7 @@ from .performance import (
     contact_points,
     find_contacts,
     leans,
+    low_feet,
     perform,
     snap_tolerance,
 )
@@ -47,6 +48,7 @@ from .take import take_of
 ROUNDING = 1e-6  # of a frame's time
 MOST = 2.0 / 3.0  # of the time in the air, in which the body falls at another rate than the scene's
 LEANING_SHARE = 0.2  # of a gap, in which hands or knees on the floor may be what carries the body
+LOW_SHARE = 0.9  # of a gap, in which a foot on the floor touches all the same
 MAX_FRAME_TIME = 0.125  # s: the flight of a small hop, a quarter second, has two frames then
 
 
@@ -128,6 +130,7 @@ def _told(
         return
     recording = performance.recording
     agreed = agreed_rate(performance, schedule)
+    slid = skids_in(performance, schedule.unseen)
     for gap in schedule.unseen:
         first, last = _frame(recording, gap.start), _frame(recording, gap.end)
         if any(skid.start <= gap.start and gap.end <= skid.end for skid in skids):
@@ -137,7 +140,8 @@ def _told(
         boxes: tuple[SupportBox, ...] = ()
         if rate is None and not _leans(performance, gap, floor_m):
             boxes = boxes_beneath(performance.times, points, gap, floor_m)
-        yield UnseenSupport(first, last, boxes, rate, recording.rate)
+        skidding = rate is None and not boxes and gap in slid
+        yield UnseenSupport(first, last, boxes, rate, recording.rate, skidding=skidding)
 
 
 def agreed_rate(performance: Performance, schedule: ContactSchedule) -> int | None:
@@ -164,6 +168,22 @@ def _leans(performance: Performance, gap: Interval, floor_m: float) -> bool:
     carry it: a hand that sweeps past the floor for a frame carries nothing."""
     leaning = leans(performance, floor_m)[_inside(performance, gap)]
     return bool(leaning.size and leaning.mean() > LEANING_SHARE)
+
+
+def skids_in(performance: Performance, gaps: Sequence[Interval]) -> tuple[Interval, ...]:
+    """The gaps between contacts in which feet are on the floor, and so slide, rather than something
+    else carrying the body: a foot that swings past the floor is as low for a moment."""
+    if not gaps:
+        return ()
+    points, floor_m = contact_points(performance)
+    low = low_feet(points, floor_m)
+
+    def slides(gap: Interval) -> bool:
+        during = low[_inside(performance, gap)]
+        on_floor = bool(during.size and during.mean() >= LOW_SHARE)
+        return on_floor and not _leans(performance, gap, floor_m)
+
+    return tuple(filter(slides, gaps))
 
 
 def _inside(performance: Performance, gap: Interval) -> BoolArray:

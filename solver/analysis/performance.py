@@ -1,6 +1,6 @@
 """Joint angles and centre of mass of a recording, and its candidate contact points."""
 
-from collections.abc import Sequence, Set
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import partial
 
@@ -134,6 +134,13 @@ def leans(performance: Performance, floor_m: float) -> BoolArray:
         (performance.centres[:, ends] + tips)[..., 2].min(axis=1),
     )
     return np.asarray(low - floor_m < LEANING * performance.character.height)
+
+
+def low_feet(points: Mapping[str, ContactPoint], floor_m: float) -> BoolArray:
+    """(T,) whether a point of a foot is as low as one that stands, however it moves."""
+    feet = [point for point in points.values() if point.kind is not PointKind.HAND]
+    low = [point.track[:, 2] - floor_m < point.kind.value.max_height for point in feet]
+    return np.asarray(np.any(low, axis=0))
 
 
 def _palm(performance: Performance, hand: int) -> ContactPoint:

@@ -34,6 +34,7 @@ class FindingKind(Enum):
     FLOATING = "floating"
     FLICKER = "flicker"
     UNSEEN_SUPPORT = "unseen support"
+    SKIDDING = "skidding"
     BEGINS_IN_AIR = "begins in the air"
     ENDS_IN_AIR = "ends in the air"
 
@@ -43,7 +44,12 @@ class FindingKind(Enum):
         return self in _NOTES
 
 
-_NOTES = (FindingKind.UNSEEN_SUPPORT, FindingKind.BEGINS_IN_AIR, FindingKind.ENDS_IN_AIR)
+_NOTES = (
+    FindingKind.UNSEEN_SUPPORT,
+    FindingKind.SKIDDING,
+    FindingKind.BEGINS_IN_AIR,
+    FindingKind.ENDS_IN_AIR,
+)
 
 
 @dataclass(frozen=True)

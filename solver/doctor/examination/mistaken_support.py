@@ -23,7 +23,7 @@ def with_cause(told: Told, recording: Recording, chosen: Mapping[str, str]) -> T
 
     def explained(each: UnseenSupport | Treadmill) -> UnseenSupport | Treadmill:
         if isinstance(each, UnseenSupport) and legs.touches(each.first, each.last):
-            return replace(each, boxes=(), rate=None, exchanged=True)
+            return replace(each, boxes=(), rate=None, exchanged=True, skidding=False)
         return each
 
     return tuple(map(explained, told))

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from ...analysis.analyse import skids_in
 from ...analysis.performance import Performance, contact_points, find_contacts
 from ...arrays import FloatArray
 from ...data.contacts import ContactSchedule, Interval, PointKind
@@ -41,15 +42,17 @@ FLICKERS = 3
 def find_footing(
     performance: Performance, schedule: ContactSchedule | None = None
 ) -> list[Finding]:
-    """Floor, flicker, unseen support, and a clip that begins or ends in the air.
+    """Floor, flicker, unseen support, feet that skid, and a clip that begins or ends in the air.
 
     performance: as seen from what it stands on. schedule: its contacts, with the scene's ground;
     None for those with the floor alone.
     """
     schedule = find_contacts(performance) if schedule is None else schedule
     found = [_floor(performance, schedule), _flicker(performance, schedule)]
+    skids = skids_in(performance, schedule.unseen)
     notes = [
-        (FindingKind.UNSEEN_SUPPORT, schedule.unseen),
+        (FindingKind.UNSEEN_SUPPORT, tuple(u for u in schedule.unseen if u not in skids)),
+        (FindingKind.SKIDDING, skids),
         (FindingKind.BEGINS_IN_AIR, tuple(f for f in schedule.flights if f.start == 0.0)),
         (
             FindingKind.ENDS_IN_AIR,

@@ -12,8 +12,11 @@ from hangtime.devtools.doctor.damages import (
     sliding,
 )
 from hangtime.devtools.doctor.measure import apart
+from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.performance import find_contacts, perform
 from hangtime.solver.body.character import build_character
+from hangtime.solver.data.faults import UnseenSupport
+from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.examination.repair import repaired
 from hangtime.solver.doctor.finding import FindingKind
@@ -113,6 +116,20 @@ def test_a_dance_of_which_little_stands_does_not_slide(first: float) -> None:
     dance = load_recording("rokoko_jesse_dance.bvh")
     kinds = {finding.kind for finding in diagnose(dance.window(first, 500.0)).findings}
     assert FindingKind.SLIDING not in kinds
+
+
+def test_feet_that_skid_while_they_stand_are_told_as_such() -> None:
+    """It was said that nothing touches."""
+    after = np.clip((jump().times - jump().times[-80]) / 0.25, 0.0, 1.0)
+    away = (after - np.sin(2.0 * np.pi * after) / (2.0 * np.pi))[:, None] * [0.35, 0.0, 0.0]
+    skidded = replace(jump(), heads=jump().heads + away[:, None])
+    found = {finding.kind: finding for finding in diagnose(skidded).findings}
+    assert FindingKind.UNSEEN_SUPPORT not in found
+    ((first, last),) = found[FindingKind.SKIDDING].frames
+    assert jump().frames[-80] <= first < last <= jump().frames[-50]
+    (told,) = analyse(skidded, MotionProblem()).unseen
+    assert isinstance(told, UnseenSupport)
+    assert (told.skidding, told.boxes) == (True, ())
 
 
 def test_feet_that_float_sink_or_slide_are_told_by_point_and_frames() -> None:

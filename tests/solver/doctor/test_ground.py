@@ -63,7 +63,7 @@ def test_the_floor_is_where_the_ground_is() -> None:
     [
         ((SPEED, 0.0, 0.0), 0.0, "sliding"),
         ((0.0, 0.0, 0.3), 0.0, "rising"),
-        ((0.0, 0.0, 0.0), SPIN, "unseen support"),
+        ((0.0, 0.0, 0.0), SPIN, "skidding"),
     ],
 )
 def test_what_rides_does_not_drift(velocity, spin: float, alone: str) -> None:
