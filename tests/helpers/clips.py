@@ -44,13 +44,15 @@ def without_frames(clip: Path, after: int, count: int, folder: Path) -> Path:
     return copy
 
 
-def begun_at_rest(clip: Path, folder: Path) -> Path:
-    """A copy of a BVH file with the rest pose, whose angles are 0, on its first frame."""
+def begun_at_rest(clip: Path, folder: Path, *, ended: bool = False) -> Path:
+    """A copy of a BVH file with the rest pose, whose angles are 0, on its first frame. ended: and
+    on its last."""
     text, motion = clip.read_text().split("MOTION\n")
     count, time, *frames = motion.splitlines()
     values = frames[0].split()
     rest = " ".join([*values[:3], *["0.0"] * (len(values) - 3)])
-    count = f"Frames: {len(frames) + 1}"
+    frames = [rest, *frames, *([rest] if ended else [])]
     copy = folder / "begun_at_rest.bvh"
-    copy.write_text("\n".join([f"{text}MOTION", count, time, rest, *frames, ""]))
+    count = f"Frames: {len(frames)}"
+    copy.write_text("\n".join([f"{text}MOTION", count, time, *frames, ""]))
     return copy

@@ -397,6 +397,19 @@ def test_frames_at_rest_are_left_out_by_the_range(tmp_path) -> None:
     assert not jump.hangtime.use_range
 
 
+def test_frames_at_rest_at_both_ends_are_left_out_together(tmp_path) -> None:
+    rigs.reset()
+    jump = import_clip(begun_at_rest(mocap_path(JUMP), tmp_path, ended=True)).armature
+    last = round(read_recording(jump).frames[-1])
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    assert kinds(jump) == ["bind pose"]
+    bpy.ops.hangtime.repair(kind="bind pose")
+    settings = jump.hangtime
+    assert (settings.use_range, settings.first_frame, settings.last_frame) == (True, 2, last - 1)
+    bpy.ops.hangtime.repair(kind="bind pose")
+    assert not settings.use_range
+
+
 @pytest.fixture
 def joined(jump: bpy.types.Object) -> bpy.types.Object:
     """The jump, 0.4 m elsewhere from frame 240 on."""
