@@ -23,6 +23,7 @@ from ...bridge.properties.stances import active_contact
 from ...bridge.worker_client import shared
 from ...bridge.worker_requests import PendingRequest
 from ...solver.analysis.take import require_inside
+from ...solver.data.contacts import ContactSchedule
 from ...solver.data.faults import (
     Fault,
     LostEdits,
@@ -216,6 +217,8 @@ def analysis(
     scene_settings(context.scene).armature = armature
     found = f"Found {contacts} contacts and {flights or 'no'} flight{'s' if flights > 1 else ''}"
     found = f"{found}{bind}{_snapped(settings, span)}{_noise(recording, problem)}{_unseen(answer)}"
+    if answer.cycle is None:
+        found += _cut_flights(answer.schedule, span, recorded)
     if lost:
         found = f"{found}. {said(LostEdits(lost)).rstrip('.')}"
     return AnalysisOutcome(f"{found}; but {said(odd)}" if odd is not None else found, lost)
@@ -230,6 +233,23 @@ def _prepare_drag(context: bpy.types.Context) -> Incremental[None]:
         asked = session().dragged = yield from ask_for(context)
         held = chosen.name if chosen is not None else ""
         shared().prepare(asked.recording, followed_problem(settings, asked, held))
+
+
+def _cut_flights(
+    schedule: ContactSchedule, span: tuple[float, float], recorded: tuple[float, float]
+) -> str:
+    """Words on a flight that goes on beyond the chosen frames, which only what is blended with the
+    rest of the take would take along. recorded: first and last frame that there are."""
+    begins = span[0] > recorded[0] and any(f.start == 0.0 for f in schedule.flights)
+    ends = span[1] < recorded[1] and any(f.end == schedule.duration for f in schedule.flights)
+    if not (begins or ends):
+        return ""
+    where = " and ".join(["begin"] * begins + ["end"] * ends)
+    sooner = " and ".join(["before its take-off"] * begins + ["after its landing"] * ends)
+    return (
+        f". The frames {where} in the air, and what is moved bends the rest of that flight; "
+        f"choose some that {where} {sooner}"
+    )
 
 
 def _noise(recording: Recording, problem: MotionProblem) -> str:

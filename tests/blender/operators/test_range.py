@@ -86,3 +86,22 @@ def test_changes_of_contacts_that_are_not_found_any_more_are_told_and_stop_an_up
         bpy.ops.hangtime.update()
     assert settings.analysed
     assert settings.adapted == made
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "told"),
+    [
+        (200, 330, "begin in the air, and what is moved bends the rest of that flight"),
+        (110, 200, "choose some that end after its landing"),
+        (110, 260, ""),
+    ],
+)
+def test_a_range_that_cuts_a_flight_is_told(
+    jump: bpy.types.Object, first: int, last: int, told: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    jump.hangtime.first_frame, jump.hangtime.last_frame = first, last
+    capfd.readouterr()
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    said = capfd.readouterr().out
+    assert told in said
+    assert ("in the air" in said) == bool(told)
