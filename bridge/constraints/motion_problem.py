@@ -30,7 +30,14 @@ from ..properties.stances import place
 from ..repairs.stored import applied, of_recording, unreadable
 from ..repairs.unreadable import require_readable
 from ..rows.copying import resized
-from ..rows.held_contacts import UNMOVED, HeldContact, found_again, frame_of, moves
+from ..rows.held_contacts import (
+    UNMOVED,
+    Displacement,
+    HeldContact,
+    found_again,
+    frame_of,
+    movers,
+)
 from ..rows.phases import SAME, phases_of, unseen_frames
 from ..scene.members import ground_members, present_members
 from ..takes.options import loop_options, text_of
@@ -307,9 +314,8 @@ def write_analysis(
         row.found_end = row.end_frame = first + contact.end * rate
         row.found_at = row.at = contact.place / metres
     for row, kept in zip(rows[len(contacts) :], added, strict=True):
-        for name, value in vars(kept).items():
-            setattr(row, name, value)
-    lost = _restore(settings, edits)
+        _put(row, kept)
+    lost = _restore(settings, edits, found.schedule, first)
     if edits:
         settings.active_contact = min(settings.active_contact, len(settings.contacts) - 1)
     else:
@@ -330,17 +336,46 @@ def _choose_first_landing(settings: HangtimeSettings) -> None:
     settings.active_contact = phases.index(landing) if landing in phases else 0
 
 
-def _restore(settings: HangtimeSettings, edits: Sequence[HeldContact]) -> tuple[str, ...]:
-    """Gives contacts their edits; names of those that were edited and are not found any more."""
+def _put(row: HangtimeContact, held: HeldContact) -> None:
+    for name, value in vars(held).items():
+        setattr(row, name, value)
+
+
+def _restore(
+    settings: HangtimeSettings,
+    edits: Sequence[HeldContact],
+    schedule: ContactSchedule,
+    first: float,
+) -> tuple[str, ...]:
+    """Gives contacts their edits, and takes added ones along; names of those that were edited and
+    are not found any more."""
     rows = [row for row in settings.contacts if not row.added]
-    again = found_again(rows, edits, 1.0 / metres_per_unit(current_scene()))
-    for i, edit in again.items():
+    metre = 1.0 / metres_per_unit(current_scene())
+    again = found_again(rows, edits, metre)
+    for i, edit in again.contacts.items():
         row = rows[i]
-        row.used, row.empty, row.on = edit.used, edit.empty, edit.on
+        row.used, row.empty = edit.used, edit.empty
         row.start_frame = frame_of(row.found_start, edit.found_start, edit.start_frame)
         row.end_frame = frame_of(row.found_end, edit.found_end, edit.end_frame)
-    for i, move in moves(rows, again).items():
-        to = [a + b for a, b in zip(rows[i].found_at, move, strict=True)]
-        place(settings, rows[i], to, whole=False)
-    kept = set(map(id, again.values()))
+    going = movers(rows, again.contacts)
+    for i, edit in going.items():
+        move = again.displacement.direction(edit.move)
+        place(settings, rows[i], (np.asarray(rows[i].found_at) + move).tolist(), whole=False)
+    for i, edit in going.items():  # a contact that is raised leaves what it was on
+        rows[i].on = edit.on
+    if not again.displacement.slight(metre):
+        _take_along(settings, again.displacement, schedule, first)
+    kept = set(map(id, again.contacts.values()))
     return tuple(edit.name for edit in edits if edit.changed and id(edit) not in kept)
+
+
+def _take_along(
+    settings: HangtimeSettings, by: Displacement, schedule: ContactSchedule, first: float
+) -> None:
+    """Contacts that the artist added, with a take that is elsewhere or later."""
+    rate = frames_per_second(current_scene())
+    for row in settings.contacts:
+        if row.added:
+            _put(row, by.contact(HeldContact.of(row)))
+            phase = _ground_phase(schedule, _bare_contact(row, first, rate, schedule.duration))
+            row.phase = phase.name if phase is not None else row.phase

@@ -86,7 +86,7 @@ def shared_checks() -> Iterator[Check]:
     yield measure("the hostile campaign", "campaign --cases 1000")
     yield measure("force plates", f"validate {plates()} --no-curves")
     yield measure("the benchmark", "benchmark --quick")
-    yield Check("the window's sandbox", ("window --prepare",))
+    yield Check("the window's sandbox", ("window --blender 4.5 --prepare --out {out}",))
     yield measure("what is repaired is fitted", "doctor --fits --quick")
     yield measure("skeletons of all conventions", "rigs --quick")
     yield Check("lint", ("lint --blender 4.5",))
@@ -123,7 +123,9 @@ def runs(blender: str) -> bool:
 def main() -> int:
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
-        first = [standalone(folder / "clone")]
+        # The environment that most of the others share, before several would make it at once.
+        shared = Check("the environment", ("test --blender 4.5 --help",))
+        first = [standalone(folder / "clone"), shared]
         window = "window --blender 4.5 --tell --reports {reports}/window --out {out}"
         last = [Check("the window, driven by mouse and keys", (window,))]
         outcomes = list(run_all(first, list(shared_checks()), last, folder))

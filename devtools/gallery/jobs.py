@@ -91,6 +91,8 @@ def work(result: Result, folder: Path, recordings: Path, *, pictures: bool, quic
     said = None
     if not recording.is_file():
         said = run_module(BLENDER, ["read", result.name, str(recording)], LONGEST)
+    if said is not None:
+        recording.unlink(missing_ok=True)  # it may be half written
     if said is None:
         words = ["--quick"] if quick or result.page is Page.SCENE else []
         said = run_module(SOLVE, [result.name, str(folder), str(recording), *words], LONGEST)

@@ -37,12 +37,13 @@ if TYPE_CHECKING:  # as in clip.py
 
 EXPORTED = "adapted"  # file name without ending
 SAVED = f"{EXPORTED}.blend"
+BEST = "best_found.blend"
 ASIDE = 1.5  # m; how far the recording stands beside the adapted figure
 
 
 def require_apart(recording: Path, folder: Path, export: ExportOptions) -> None:
     """Before a solve takes its seconds. Raises WouldReplaceRecording."""
-    for written in (_exported(folder, export), folder / SAVED):
+    for written in (_exported(folder, export), folder / SAVED, folder / BEST):
         if recording.exists() and written.exists() and written.samefile(recording):
             raise WouldReplaceRecording(str(written))
 
@@ -161,7 +162,7 @@ class Outputs:
         if self.result.adaptation.reached > 0.0:
             _, _, written = self._write_actions("best found, short of the goal")
             self._build_scene()
-            _save_blend(self.outbox.path("best_found.blend"))
+            _save_blend(self.outbox.path(BEST))
         self._write_report(self._report(), written)
 
     def _report(self) -> Report:

@@ -152,9 +152,9 @@ class UpdateOperator(Adapting, bpy.types.Operator):
         recording = yield from read_wanted(armature)
         if not analysis_is_of(settings_of(armature), recording):
             lost = (yield from analysis(context)).lost
+            present(session().solving).again()
             if lost:
                 raise LostEdits(lost)
-            present(session().solving).again()
         return (yield from super().task(context))
 
 

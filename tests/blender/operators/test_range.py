@@ -11,6 +11,7 @@ from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.traces_store import kept
 from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.operators.solve.adapt import read_wanted
+from hangtime.tests.blender.helpers.solids import make_box
 
 FIRST, LAST = 150, 245  # in the push and shortly after the landing
 SAME = 2.0  # frames
@@ -68,12 +69,21 @@ def test_what_was_changed_about_contacts_goes_with_a_take_that_is_moved(
     jump: bpy.types.Object,
 ) -> None:
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
-    jump.hangtime.stances["ground 2"].forward = 0.2
+    settings, crate = jump.hangtime, make_box("Crate")
+    stance = settings.stances["ground 2"]
+    stance.forward, stance.up = 0.2, 0.1
+    settings.contacts["Left toe 2"].on = crate
+    bpy.context.scene.frame_set(120)
+    assert bpy.ops.hangtime.add_contact(point="Left hand") == {"FINISHED"}
+    hand = settings.contacts["Left hand added"].at[0]
     jump.location.x += 2.0
     bpy.context.view_layer.update()
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
-    assert jump.hangtime.stances["ground 2"].forward == pytest.approx(0.2, abs=1e-4)
-    assert jump.hangtime.stances["ground 2"].turn == pytest.approx(0.0, abs=1e-4)
+    stance = settings.stances["ground 2"]
+    assert (stance.forward, stance.up) == pytest.approx((0.2, 0.1), abs=1e-4)
+    assert stance.turn == pytest.approx(0.0, abs=1e-4)
+    assert settings.contacts["Left toe 2"].on == crate
+    assert settings.contacts["Left hand added"].at[0] == pytest.approx(hand + 2.0, abs=1e-3)
 
 
 def test_changes_of_contacts_that_are_not_found_any_more_are_told_and_stop_an_update(

@@ -1,9 +1,10 @@
 """Contacts found again by another analysis."""
 
 from dataclasses import replace
+from math import nan
 
 import pytest
-from hangtime.bridge.rows.held_contacts import HeldContact, found_again, frame_of, moves
+from hangtime.bridge.rows.held_contacts import HeldContact, found_again, frame_of, movers
 
 METRE = 1.0
 
@@ -30,25 +31,56 @@ def shifted(held: HeldContact, frames: float, x: float) -> HeldContact:
 def test_a_take_that_is_elsewhere_or_later_has_the_same_contacts(frames: float, x: float) -> None:
     held = [MOVED, RIGHT]
     rows = [shifted(each, frames, x) for each in held]
-    assert found_again(rows, held, METRE) == {0: MOVED, 1: RIGHT}
+    again = found_again(rows, held, METRE)
+    assert again.contacts == {0: MOVED, 1: RIGHT}
+    assert again.displacement.later == frames
+    assert again.displacement.place((0.0, 0.0, 0.0)) == pytest.approx((x, 0.0, 0.0))
+    along = again.displacement.contact(LEFT)
+    assert along.start_frame == LEFT.start_frame + frames
+    assert along.at == pytest.approx((1.0 + x, 0.0, 0.0))
+
+
+def test_a_take_that_is_turned_has_its_moves_turned() -> None:
+    held = [MOVED, contact("Left toe", 200.0, 240.0, 9.0)]
+    rows = [replace(each, found_at=(0.0, each.found_at[0], 0.0)) for each in held]
+    again = found_again(rows, held, METRE)
+    assert set(again.contacts) == {0, 1}
+    assert again.displacement.direction(MOVED.move) == pytest.approx((0.0, 0.2, 0.0))
 
 
 def test_of_another_take_those_near_by_at_the_same_time_are_the_same() -> None:
     rows = [contact("Right toe", 20.0, 60.0, 0.0), shifted(LEFT, 3.0, 0.1)]
-    assert found_again(rows, [MOVED, RIGHT], METRE) == {1: MOVED}
-    assert found_again(rows, [MOVED, RIGHT], 0.01) == {}  # 10 cm are ten units there
+    assert found_again(rows, [MOVED, RIGHT], METRE).contacts == {1: MOVED}
+    assert not found_again(rows, [MOVED, RIGHT], 0.01).contacts  # 10 cm are ten units there
+
+
+def test_a_range_that_is_moved_by_a_cycle_leaves_the_steps_their_own() -> None:
+    steps = [contact("Left toe", 100.0 + 40.0 * k, 120.0 + 40.0 * k, 1.0 * k) for k in range(5)]
+    held = [steps[0], replace(steps[1], at=(1.2, 0.0, 0.0)), steps[2]]
+    again = found_again(steps[1:4], held, METRE)
+    assert again.contacts == {0: held[1], 1: held[2]}
+
+
+def test_of_merged_contacts_the_longer_one_counts() -> None:
+    long = replace(contact("Left toe", 100.0, 135.0, 1.0), at=(1.2, 0.0, 0.0))
+    short = contact("Left toe", 137.0, 140.0, 1.0)
+    assert found_again([LEFT], [long, short], METRE).contacts == {0: long}
 
 
 def test_what_is_new_in_a_stance_that_was_moved_goes_along() -> None:
-    rows = [LEFT, RIGHT]
-    assert moves(rows, {0: MOVED}) == {0: pytest.approx((0.2, 0.0, 0.0)), 1: MOVED.move}
-    assert set(moves([*rows, LEFT], {0: MOVED, 1: RIGHT})) == {0, 1}
+    assert movers([LEFT, RIGHT], {0: MOVED}) == {0: MOVED, 1: MOVED}
+    assert movers([LEFT, RIGHT, LEFT], {0: MOVED, 1: RIGHT}) == {0: MOVED, 1: RIGHT}
 
 
 def test_what_counts_as_a_change() -> None:
     assert not LEFT.changed
     for changed in (MOVED, replace(LEFT, used=False), replace(LEFT, end_frame=130.0)):
         assert changed.changed
+
+
+def test_what_is_no_number_is_as_it_was_found() -> None:
+    nowhere = replace(MOVED, at=(nan, 0.0, 0.0), start_frame=nan, end_frame=nan)
+    assert HeldContact.of(nowhere) == LEFT
 
 
 def test_frames_of_the_artist_stay_or_go_along() -> None:
