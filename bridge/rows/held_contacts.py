@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from math import atan2, dist, isfinite
+from math import dist, isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...solver.arrays import FloatArray
-from ...solver.numerics.rotations import axis_rotation
+from ...solver.numerics.rotations import axis_rotation, planar_turn
 from .protocols import ContactRow
 
 if TYPE_CHECKING:
@@ -94,8 +94,7 @@ class Displacement:
         a, b = was - was.mean(axis=0), now - now.mean(axis=0)
         turn = 0.0
         if np.sqrt((a[:, :2] ** 2).sum(axis=1).mean()) > SPREAD * metre:
-            across = float((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum())
-            told = atan2(across, float((a[:, :2] * b[:, :2]).sum()))
+            told = float(planar_turn(a, b))
             turn = told if abs(told) > SLIGHT else 0.0
         shift = now.mean(axis=0) - axis_rotation(2, turn) @ was.mean(axis=0)
         starts = zip(rows, before, strict=True)

@@ -114,6 +114,14 @@ def mean_rotation(R: FloatArray) -> FloatArray:
     return np.asarray(u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt)
 
 
+def planar_turn(a: FloatArray, b: FloatArray) -> FloatArray:
+    """(...) rad, the turn about the vertical that takes points a (..., N, 3), about their middle,
+    nearest to b (..., N, 3), about theirs: planar Kabsch."""
+    across = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    along = a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1]
+    return np.asarray(np.arctan2(across.sum(axis=-1), along.sum(axis=-1)))
+
+
 def unit(v: FloatArray) -> FloatArray:
     """(..., 3) vectors normalised to length 1; NaN for zero."""
     return np.asarray(v / np.linalg.norm(v, axis=-1, keepdims=True))

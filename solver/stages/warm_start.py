@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.contacts import ContactSchedule, PhaseKind
-from ..numerics.rotations import axis_rotation
+from ..numerics.rotations import axis_rotation, planar_turn
 from ..numerics.splines import dense_instants, greville_abscissae
 from ..transcription.motion import Motion
 from ..transcription.ride import Ride
@@ -199,12 +199,7 @@ def _least_squares(
     old, new = (np.stack([each.at(i, times) for i in contacts], axis=1) for each in standings)
     pivots, to = old.mean(axis=1), new.mean(axis=1)
     a, b = old - pivots[:, None], new - to[:, None]
-    turns = np.unwrap(
-        np.arctan2(
-            (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]).sum(axis=1),
-            (a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1]).sum(axis=1),
-        )
-    )
+    turns = np.unwrap(planar_turn(a, b))
     turns += 2 * np.pi * np.round((asked - turns[0]) / (2 * np.pi))
     return RigidMove(start, end, times, pivots, turns, to - pivots)
 
