@@ -1,17 +1,20 @@
 """A bounding-volume tree over triangles, asked by many points at once.
 
 Built from the order of the centres along a Morton curve (Lauterbach et al. 2009), as a complete
-binary tree without pointers; searched level by level, all points together, so that numpy does it.
+binary tree without pointers; searched level by level, all points together, so that numpy does it. A
+few triangles are not searched: numpy looks at all sooner.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from .point_triangle import closest_on_triangles
+from .point_triangle import Triangles
 
 LEAF = 4  # triangles
+FEW = 500  # triangles; to look at all of fewer takes no longer than to search a tree
 GRID_BITS = 16  # of the Morton curve, an axis
 TOGETHER = 4096  # points searched at once
 MOST_PAIRS = 100_000  # of a point and a box, looked at at once
@@ -50,14 +53,24 @@ class TriangleTree:
             high[at] = high[below].reshape(-1, 2, 3).max(axis=1)
         return TriangleTree(sorted_, order, low, high)
 
+    @cached_property
+    def _measured(self) -> Triangles:
+        return Triangles.of(self.triangles)
+
     @property
     def _depth(self) -> int:
         return (len(self.low) + 1).bit_length() - 2
 
     def closest(self, points: FloatArray) -> IntArray:
         """(N,) the triangles nearest to points (N, 3) m, in the tree's order."""
-        parts = np.array_split(np.arange(len(points)), max(1, -(-len(points) // TOGETHER)))
-        return np.concatenate([self._closest(points[part]) for part in parts])
+        few = len(self.triangles) <= FEW
+        together = MOST_PAIRS // len(self.triangles) if few else TOGETHER
+        find = self._closest_of_all if few else self._closest
+        parts = np.array_split(points, max(1, -(-len(points) // together)))
+        return np.concatenate([find(part) for part in parts])
+
+    def _closest_of_all(self, points: FloatArray) -> IntArray:
+        return np.asarray(self._measured.apart(points).argmin(axis=1))
 
     def _closest(self, points: FloatArray) -> IntArray:
         bound, found = np.full(len(points), np.inf), np.full(len(points), np.inf)
@@ -76,7 +89,7 @@ class TriangleTree:
                 waiting.append((level + 1, every, node))
             elif len(every):
                 owner, triangle = self._in_leaves(every, node)
-                apart = self._to_triangles(points[owner], triangle)
+                apart = self._measured.apart_in_pairs(points[owner], triangle)
                 which, at = _least(owner, apart)
                 closer = apart[at] < found[which]
                 which, at = which[closer], at[closer]
@@ -121,10 +134,6 @@ class TriangleTree:
         least = farther.sum(axis=1) - (farther - np.minimum(low, high)).max(axis=1)
         return np.asarray(least * (1.0 + ROUNDING))
 
-    def _to_triangles(self, points: FloatArray, triangle: IntArray) -> FloatArray:
-        gap = points - closest_on_triangles(points, self.triangles[triangle])[0]
-        return np.asarray(np.einsum("ni,ni->n", gap, gap))
-
 
 def _lower(bound: FloatArray, owner: IntArray, amount: FloatArray) -> None:
     """Lowers bounds (N,), in place, to the least amount of each owner; these are ascending."""
@@ -135,10 +144,12 @@ def _lower(bound: FloatArray, owner: IntArray, amount: FloatArray) -> None:
 
 
 def _least(owner: IntArray, amount: FloatArray) -> tuple[IntArray, IntArray]:
-    """The owners there are, and where the least amount of each is."""
-    order = np.lexsort((amount, owner))
-    which, first = np.unique(owner[order], return_index=True)
-    return which, order[first]
+    """The owners there are, which are ascending, and where the least amount of each is first."""
+    first = np.flatnonzero(np.diff(owner, prepend=-1))
+    least = np.minimum.reduceat(amount, first)
+    at = np.flatnonzero(amount == np.repeat(least, np.diff(first, append=len(owner))))
+    at = at[np.flatnonzero(np.diff(owner[at], prepend=-1))]
+    return owner[first], at
 
 
 def _morton(centres: FloatArray) -> IntArray:

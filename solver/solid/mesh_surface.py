@@ -15,8 +15,9 @@ from .shapes import FEET, SOLID_SHARE, Capsule, Capsules, capsules, floor_balls
 from .surfaces import WORLD, Closest, Placed, axes_in
 
 SAMPLING = 0.06  # m along an axis, between the points from which its deepest is sought
-GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
-NARROWINGS = 10  # by the golden section: to 1 mm of an axis
+SHALLOWER = 1e-9  # m, by which the point that is found may be less deep than the deepest
+MOST_CUTS = 10
+OPPOSITE = -0.5  # the cosine beyond which two normals are two ways out
 
 
 def scene_shapes(
@@ -65,12 +66,11 @@ class MeshSurface:
     def closest(self, placed: Placed, instants: IntArray, items: IntArray) -> Closest:
         """Of the deepest point of each axis, less the radius."""
         start, end = axes_in(self.motion, self.shapes, placed, instants, items)
-        share = deepest_shares(self.mesh, start, end)[:, None]
-        found = self.mesh.distances(start + share * (end - start))
+        found = deepest(self.mesh, start, end)
         _, turns = self.motion.at(placed.times)
-        normal = np.einsum("nij,nj->ni", turns[instants], found.normal)
+        normal = np.einsum("nij,nj->ni", turns[instants], found.gradient)
         first, last = self.shapes.some_ends(placed.pose, instants, items)
-        at = first + share * (last - first)
+        at = first + found.share[:, None] * (last - first)
         bodies = self.shapes.bodies[items]
         both = np.stack([bodies, np.full(len(items), WORLD)], axis=1)
         distance = found.distance - self.shapes.radius[items]
@@ -79,33 +79,70 @@ class MeshSurface:
         )
 
 
-def deepest_shares(mesh: TriangleMesh, start: FloatArray, end: FloatArray) -> FloatArray:
-    """Shares (N,) in [0, 1] of the deepest points of segments from start to end (N, 3) m.
+@dataclass(frozen=True)
+class Deepest:
+    """The deepest points of N segments: shares (N,) in [0, 1], signed distances (N,) m and their
+    gradients (N, 3), by the segments' places."""
 
-    The least of samples, then the golden section between its neighbours: about the least sample
-    the distance from a solid has one minimum, as far as the samples can tell.
+    share: FloatArray
+    distance: FloatArray
+    gradient: FloatArray
+
+
+def deepest(mesh: TriangleMesh, start: FloatArray, end: FloatArray) -> Deepest:
+    """Of segments from start to end (N, 3) m.
+
+    The least of samples, then cutting planes (Kelley 1960) between it and its lower neighbour:
+    about the least sample the distance from a solid is convex, as far as the samples can tell, and
+    where faces are flat two cuts meet in its least.
     """
-    along = end - start
+    every, along = np.arange(len(start)), end - start
     longest = float(np.linalg.norm(along, axis=1).max(initial=0.0))
-    if longest == 0.0:
-        return np.zeros(len(start))
     samples = np.linspace(0.0, 1.0, 2 + int(longest / SAMPLING))
 
-    def depth(share: FloatArray) -> FloatArray:
-        return mesh.distances(start + share[:, None] * along).distance
+    def cut(which: IntArray, share: FloatArray) -> FloatArray:
+        """(6, M) shares, distances there, their slopes along the segments, and normals."""
+        found = mesh.distances(start[which] + share[:, None] * along[which])
+        slope = np.einsum("ni,ni->n", found.normal, along[which])
+        return np.stack([share, found.distance, slope, *found.normal.T])
 
-    found = np.stack([depth(np.full(len(start), share)) for share in samples], axis=1)
-    least = found.argmin(axis=1)
-    low, high = samples[np.maximum(least - 1, 0)], samples[np.minimum(least + 1, len(samples) - 1)]
-    inner, outer = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    at_inner, at_outer = depth(inner), depth(outer)
-    for _ in range(NARROWINGS):
-        left = at_inner < at_outer
-        low, high = np.where(left, low, inner), np.where(left, outer, high)
-        new = np.where(left, high - GOLDEN * (high - low), low + GOLDEN * (high - low))
-        at_new = depth(new)
-        inner, outer = np.where(left, new, outer), np.where(left, inner, new)
-        at_inner, at_outer = np.where(left, at_new, at_outer), np.where(left, at_inner, at_new)
-    shares = np.stack([samples[least], np.where(at_inner < at_outer, inner, outer)])
-    depths = np.stack([found.min(axis=1), np.minimum(at_inner, at_outer)])
-    return np.asarray(np.take_along_axis(shares, depths.argmin(axis=0)[None], axis=0)[0])
+    cuts = cut(np.repeat(every, len(samples)), np.tile(samples, len(start)))
+    cuts = cuts.reshape(-1, len(start), len(samples))
+    least = cuts[1].argmin(axis=1)
+    best = cuts[:, every, least]
+    beside = np.clip(np.where(best[2] > 0.0, least - 1, least + 1), 0, len(samples) - 1)
+    low, high = cuts[:, every, np.minimum(least, beside)], cuts[:, every, np.maximum(least, beside)]
+    rest = every
+    for _ in range(MOST_CUTS):
+        share, bound = _meeting(low[:, rest], high[:, rest])
+        deeper = best[1, rest] - bound > SHALLOWER
+        rest, share = rest[deeper], share[deeper]
+        if not len(rest):
+            break
+        new = cut(rest, share)
+        best[:, rest] = np.where(new[1] < best[1, rest], new, best[:, rest])
+        falls = new[2] < 0.0
+        low[:, rest] = np.where(falls, new, low[:, rest])
+        high[:, rest] = np.where(falls, high[:, rest], new)
+    return Deepest(best[0], best[1], _gradient(best, low, high))
+
+
+def _meeting(low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Where two cuts (6, M) meet, and how deep; the middle, where they do not between them."""
+    turn, width = high[2] - low[2], high[0] - low[0]
+    steep = turn > 0.0
+    ahead = (low[1] - high[1] + high[2] * width) / np.where(steep, turn, 1.0)
+    between = steep & (ahead > 0.0) & (ahead < width)
+    ahead = np.where(between, ahead, 0.5 * width)
+    bound = np.minimum(low[1] + low[2] * ahead, high[1] - high[2] * (width - ahead))
+    return low[0] + ahead, np.asarray(bound)
+
+
+def _gradient(best: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
+    """(N, 3) gradients of the least distances: the normals of the cuts (6, N) beside, mixed so that
+    there is no slope along the segment, as a ridge is left by both its faces; where these look
+    different ways out, the normal of one."""
+    mixed = (low[2] < 0.0) & (high[2] > 0.0) & ((low[3:] * high[3:]).sum(axis=0) > OPPOSITE)
+    share = high[2] / np.where(mixed, high[2] - low[2], 1.0)
+    both = share * low[3:] + (1.0 - share) * high[3:]
+    return np.asarray(np.where(mixed, both, best[3:]).T)

@@ -21,6 +21,7 @@ from .surfaces import Surface, Surfaces
 from .way_out import WayOut, as_way
 
 OPPOSITE = -0.5  # the cosine beyond which two ways out go to different sides
+ALIKE = 2  # decimals of two ways out that count as one
 TORN = 0.05  # m deep at a first or last instant: beside an edge of an open mesh; 12 m/s are less
 AROUND = 0.1  # s, before and after, in which a way out must be none of the way itself
 TOGETHER = 2.0 * AROUND  # s, within which what passes does so as one
@@ -101,12 +102,18 @@ class Passable:
         closest = self.mesh.closest(placed, np.arange(len(passing.times)), items)
         _, turns = self.mesh.motion.at(placed.times)
         out = np.einsum("nji,nj->ni", turns, closest.normal)
-        one_limb = self.linked[np.ix_(closest.bodies[:, 0], closest.bodies[:, 0])]
-        if (one_limb & (out @ out.T < OPPOSITE)).any():
+        if self._opposed(closest.bodies[:, 0], out):
             return True
         within = (passing.times > SPACING) & (passing.times < motion.duration - SPACING)
         ends = np.concatenate([run[[0, -1]] for run in _runs(passing)])
         return bool(((closest.distance[ends] < -TORN) & within[ends]).any())
+
+    def _opposed(self, bodies: IntArray, out: FloatArray) -> bool:
+        """Whether ways out (N, 3) of one limb's bodies (N,) go to opposite sides. Most are alike,
+        for an object has few faces."""
+        unlike = np.unique(np.column_stack([bodies, np.round(out, ALIKE)]), axis=0)
+        which, out = unlike[:, 0].astype(int), unlike[:, 1:]
+        return bool((self.linked[np.ix_(which, which)] & (out @ out.T < OPPOSITE)).any())
 
     def _shortest(self, passing: Penetrations, motion: Motion) -> int:
         """The way along which the least is missing."""
