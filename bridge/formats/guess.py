@@ -1,29 +1,38 @@
 """Estimation of the up axis and of the unit of length, where a motion file tells neither."""
 
+from typing import get_args
+
 import numpy as np
 
 from ...solver.arrays import FloatArray, IntArray
-from .motion_clip import MotionClip, UpAxis, forward_kinematics, rest_axes
+from .motion_clip import MotionClip, UpAxis, forward_kinematics, rest_axes, rest_heads
 
 ACCLAIM_UNIT = 0.0254 / 0.45  # an inch over the scale that the CMU recordings carry
 LIKELY_UNITS = (1.0, 0.1, ACCLAIM_UNIT, 0.0254, 0.01, 0.001)  # m
 LIKELY_HEIGHT = 1.7  # m
 LONGEST_PATH = 1.35  # of a person's height, along the bones from fingertips to toes
 SAMPLES = 32
+FEET = ("foot", "toe", "ankle")
+UPRIGHT = 0.8  # of the way from feet to head, along one axis, of a rest pose that stands, and
+TALL = 0.45  # of the longest path: who stands has 0.55 to 0.65, bones that all follow an axis less
+SUNK = 0.01  # of it, below 0, of no body's lowest joints that a floor at 0 carries
 MOST_STRETCHED = 0.05  # of a bone that is one; more, and it moves beside what it hangs on
+
+_INDEX: dict[UpAxis, int] = {"Y": 1, "Z": 2}
 
 
 def guess_up(clip: MotionClip) -> UpAxis:
-    """Up axis: along which the head is above the feet; without their names, the tall one."""
+    """Up axis: along which the head is above the feet in the motion; without their names, the tall
+    one. Where an upright rest pose says another, the figure lies or stands on its hands, or its
+    root's rotation turns all upright: the floor tells which."""
     points = _sampled_points(clip)
-    names = [joint.name.lower() for joint in clip.joints] * 2
-    head = [i for i, name in enumerate(names) if "head" in name]
-    feet = [i for i, name in enumerate(names) if any(w in name for w in ("foot", "toe", "ankle"))]
-    if head and feet:
-        stature = np.mean(points[:, head], axis=(0, 1)) - np.mean(points[:, feet], axis=(0, 1))
-    else:
-        stature = np.median(np.ptp(points, axis=1), axis=0)
-    return "Z" if stature[2] > stature[1] else "Y"
+    stature = _stature(clip, points)
+    moving: UpAxis = "Z" if stature[2] > stature[1] else "Y"
+    rest = _rest_up(clip)
+    if rest is None or rest == moving:
+        return moving
+    upside_down = -stature[_INDEX[rest]] > abs(stature[_INDEX[moving]])
+    return rest if upside_down or _lies(clip, points, rest, moving) else moving
 
 
 def guess_unit(clip: MotionClip) -> float:
@@ -37,6 +46,43 @@ def likely_unit(height: float) -> float:
     if height <= 0.0:
         return 1.0
     return min(LIKELY_UNITS, key=lambda unit: abs(np.log(unit * height / LIKELY_HEIGHT)))
+
+
+def _rest_up(clip: MotionClip) -> UpAxis | None:
+    """The axis along which the rest pose stands; None where it does not clearly, as where all bones
+    follow one axis, or where names do not tell head and feet."""
+    heads = rest_heads(clip)
+    points = np.concatenate([heads, heads + rest_axes(clip)])
+    if not all(_ends(clip)):
+        return None
+    stature = _stature(clip, points[None])
+    tall = max(UPRIGHT * float(np.linalg.norm(stature)), TALL * _longest_path(clip))
+    return next((axis for axis in get_args(UpAxis) if stature[_INDEX[axis]] > tall), None)
+
+
+def _lies(clip: MotionClip, points: FloatArray, rest: UpAxis, moving: UpAxis) -> bool:
+    """Whether the lowest joints are on a floor at 0 if the rest pose's axis is up, rather than if
+    the other one is, along which the figure lies or stands. points: (S, 2J, 3), joints first."""
+    lowest = points[:, : len(clip.joints)].min(axis=1)
+    under, beside = lowest[:, _INDEX[rest]], lowest[:, _INDEX[moving]]
+    if np.median(under) < -SUNK * _longest_path(clip):
+        return False
+    return bool(np.median(np.abs(under)) < np.median(np.abs(beside)))
+
+
+def _stature(clip: MotionClip, points: FloatArray) -> FloatArray:
+    """(3,) from feet to head of points (S, 2J, 3); without their names, how far all extend."""
+    head, feet = _ends(clip)
+    if not (head and feet):
+        return np.asarray(np.median(np.ptp(points, axis=1), axis=0))
+    return np.asarray(points[:, head].mean(axis=(0, 1)) - points[:, feet].mean(axis=(0, 1)))
+
+
+def _ends(clip: MotionClip) -> tuple[list[int], list[int]]:
+    """Indices among heads and tails (2J,) of the head's, and of the feet's."""
+    names = [joint.name.lower() for joint in clip.joints] * 2
+    head = [i for i, name in enumerate(names) if "head" in name]
+    return head, [i for i, name in enumerate(names) if any(w in name for w in FEET)]
 
 
 def _longest_path(clip: MotionClip) -> float:

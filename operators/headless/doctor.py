@@ -9,29 +9,34 @@ from typing import Any
 from ...bridge.recipe.recording import RECORDING
 from ...bridge.recipe_syntax.toml_text import entries, sections
 from ...solver.data.problem import MotionProblem
+from ...solver.data.reports.recording import Origin
 from ...solver.doctor.examination.diagnose import Diagnosis, diagnose
 from ...solver.doctor.finding import Finding
 from ..words.analysis_text import relative
 from ..words.doctor_text import diagnosis_text, finding_sentence, rounded
 from ..words.doubt_text import file_doubts
+from ..words.report_text import guesses
 from .clip import Clip, read_clip
 from .outbox import not_writable
 
 
-def examined(clip: Clip, problem: MotionProblem, mass: float | None) -> tuple[Diagnosis, list[str]]:
-    """The diagnosis of a clip, and doubts about its file. mass: kg, None where the artist stated
+def examined(clip: Clip, problem: MotionProblem, mass: float | None) -> tuple[Diagnosis, Origin]:
+    """The diagnosis of a clip, and how its file was read. mass: kg, None where the artist stated
     none. Raises Fault."""
     recording, origin = read_clip(clip, problem)
-    return diagnose(recording, problem.bones, mass), file_doubts(origin)
+    return diagnose(recording, problem.bones, mass), origin
 
 
-def told(diagnosis: Diagnosis, doubts: list[str], clip: Clip, *, as_json: bool) -> str:
-    """The diagnosis, and doubts about the file, as text."""
+def told(diagnosis: Diagnosis, origin: Origin, *, as_json: bool) -> str:
+    """The diagnosis, what was guessed of the file, and doubts about it, as text."""
+    doubts, guessed = file_doubts(origin), guesses(origin)
     if not as_json:
-        return "".join(f"note: {doubt}.\n" for doubt in doubts) + diagnosis_text(diagnosis)
+        notes = [*doubts, f"guessed: {' and '.join(guessed)}"] if guessed else doubts
+        return "".join(f"note: {note}.\n" for note in notes) + diagnosis_text(diagnosis)
     content = {
-        "clip": clip.path.name,
+        "clip": origin.clip,
         "file": doubts,
+        "guessed": guessed,
         "findings": [_content(finding) for finding in diagnosis.findings],
         "recording": RECORDING.write(rounded(diagnosis.repairs)),
         "mass": diagnosis.mass,

@@ -12,7 +12,7 @@ from ...solver.data.faults import UnseenSupport
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
 from .messages import sentence, together
-from .report_text import held_at_rest
+from .report_text import guesses, held_at_rest
 
 LEAST_WIDTH = 16  # letters of a column
 
@@ -26,10 +26,7 @@ def analysis_text(analysis: Analysis, origin: Origin) -> str:
         f"figure: {figure.height:.2f} m tall, {figure.mass:g} kg, {len(figure.bodies)} bodies, "
         f"{figure.n_dofs} degrees of freedom; floor at {analysis.schedule.floor_m:.3f} m",
     ]
-    if origin.unit_guessed:
-        lines.append(f"guessed: one unit of the file is {origin.unit_m:.4g} m (else say --unit)")
-    if origin.up_guessed:
-        lines.append(f"guessed: {origin.up} points up (else say --up)")
+    lines += [f"guessed: {guess}" for guess in guesses(origin)]
     if origin.bind_frames:
         lines.append(f"left out: {held_at_rest(origin.bind_frames)} (else say --first)")
     lines += ["", f"{'phase':<12}{'frames':>17}{'seconds':>9}"]

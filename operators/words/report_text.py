@@ -9,6 +9,7 @@ from ...solver.data.contacts import PhaseKind, phase_title
 from ...solver.data.reports.constraints import ConstraintReport
 from ...solver.data.reports.jumps import PhaseReport
 from ...solver.data.reports.keys import KeysReport
+from ...solver.data.reports.recording import Origin
 from ...solver.data.reports.report import Report
 from ...solver.data.status import Durations
 from .headline import (
@@ -124,13 +125,9 @@ def _input(report: Report) -> Iterator[str]:
         f"{figure.bodies} bodies, {figure.degrees_of_freedom} degrees of freedom"
     )
     yield from (f"{'Gravity':<12}{line}" for line in gravity_lines(figure.gravity_m_s2))
-    guesses = []
-    if r.unit_guessed:
-        guesses.append(f"one unit of the file is {r.unit_m:.4g} m (--unit)")
-    if r.up_axis_guessed:
-        guesses.append(f"{r.up_axis} points up (--up)")
-    if guesses:
-        yield f"Guessed     {' and '.join(guesses)}"
+    origin = Origin(r.clip, r.unit_m, r.unit_guessed, r.up_axis, r.up_axis_guessed)
+    if guessed := guesses(origin):
+        yield f"Guessed     {' and '.join(guessed)}"
     if r.bind_pose_frames:
         yield f"Left out    {held_at_rest(r.bind_pose_frames)}"
 
@@ -140,6 +137,16 @@ def gravity_lines(gravity: float) -> list[str]:
     if gravity == STANDARD_GRAVITY:
         return []
     return [f"{gravity:g} m/s²; body weights (BW) are those on Earth all the same"]
+
+
+def guesses(origin: Origin) -> list[str]:
+    """What a file does not tell, as it is taken, and the option that tells it."""
+    told = []
+    if origin.unit_guessed:
+        told.append(f"one unit of the file is {origin.unit_m:.4g} m (else say --unit)")
+    if origin.up_guessed:
+        told.append(f"{origin.up} points up (else say --up)")
+    return told
 
 
 def held_at_rest(count: int) -> str:

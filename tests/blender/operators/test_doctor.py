@@ -40,6 +40,14 @@ def test_what_is_wrong_is_told_with_its_remedy(tmp_path: Path, capsys) -> None:
 
 def test_a_clean_clip_is_called_so(capsys) -> None:
     assert main(["doctor", str(mocap_path(CLIP)), *FRAMES]) == 0
+    guess, said = capsys.readouterr().out.splitlines()
+    assert "is 0.05644 m (else say --unit)" in guess
+    assert "Y points up (else say --up)" in guess
+    assert said == "Nothing is wrong with the recording."
+
+
+def test_what_is_said_of_the_file_is_not_guessed(capsys) -> None:
+    assert main(["doctor", str(mocap_path(CLIP)), *FRAMES, "--unit", "0.0564", "--up", "Y"]) == 0
     assert capsys.readouterr().out == "Nothing is wrong with the recording.\n"
 
 

@@ -10,6 +10,7 @@ from hangtime.bridge.formats.bvh import read_bvh
 from hangtime.bridge.formats.guess import ACCLAIM_UNIT, guess_unit, guess_up
 from hangtime.bridge.formats.motion_clip import (
     Joint,
+    MotionClip,
     forward_kinematics,
     rest_axes,
     to_recording,
@@ -427,3 +428,55 @@ def test_a_mesh_with_a_place_that_is_no_number(vertex: str, tmp_path: Path) -> N
     with pytest.raises(UnreadableMesh) as caught:
         read_obj(path)
     assert caught.value.line == 2
+
+
+UP = {"Y": 1, "Z": 2}
+UPRIGHT_AT_REST = ("forward_jump_116cm.bvh", "Y"), ("fair1_jumping.bvh", "Z")
+
+
+def turned(clip: MotionClip, turn: np.ndarray) -> MotionClip:
+    """Its motion turned by a rotation (3, 3) about the origin; the rest pose stays."""
+    rotations, positions = clip.rotations.copy(), clip.positions.copy()
+    rotations[:, 0], positions[:, 0] = turn @ rotations[:, 0], positions[:, 0] @ turn.T
+    return replace(clip, rotations=rotations, positions=positions)
+
+
+def on_the_floor(clip: MotionClip, up: str) -> MotionClip:
+    """The figure set down so that its lowest joint is on the floor at each frame."""
+    positions = clip.positions.copy()
+    positions[:, 0, UP[up]] -= forward_kinematics(clip)[0][..., UP[up]].min(axis=1)
+    return replace(clip, positions=positions)
+
+
+@pytest.mark.parametrize(("name", "up"), UPRIGHT_AT_REST)
+@pytest.mark.parametrize("heading", [0, 90, 180, 270])
+@pytest.mark.parametrize("tilt", [90, -90, 180])
+def test_who_lies_or_stands_on_the_hands_all_through_is_upright_at_rest(
+    name: str, up: str, heading: int, tilt: int
+) -> None:
+    way = axis_rotation(UP[up], np.radians(heading)) @ axis_rotation(0, np.radians(tilt))
+    assert guess_up(on_the_floor(turned(load_clip(name), way), up)) == up
+
+
+@pytest.mark.parametrize(("name", "up"), UPRIGHT_AT_REST)
+@pytest.mark.parametrize("heading", [0, 90, 180, 270])
+def test_a_root_that_turns_all_to_the_other_axis_outweighs_the_rest_pose(
+    name: str, up: str, heading: int
+) -> None:
+    """As exporters write motion in another world than the skeleton's; also in place."""
+    clip, other = load_clip(name), "Z" if up == "Y" else "Y"
+    way = axis_rotation(0, np.radians(90 if up == "Y" else -90))
+    way = way @ axis_rotation(UP[up], np.radians(heading))
+    at_origin = clip.positions.copy()
+    at_origin[:, 0] = 0.0
+    assert guess_up(turned(clip, way)) == other
+    assert guess_up(turned(replace(clip, positions=at_origin), way)) == other
+
+
+def test_a_rest_pose_whose_bones_all_follow_one_axis_tells_nothing() -> None:
+    clip = load_clip("forward_jump_116cm.bvh")
+    joints = tuple(
+        replace(joint, offset=np.array([0.0, 0.0, np.linalg.norm(joint.offset)]))
+        for joint in clip.joints
+    )
+    assert guess_up(replace(clip, joints=joints)) == "Y"
