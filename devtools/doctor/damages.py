@@ -295,6 +295,22 @@ def _swaying(name: str, metres: float, seconds: float, way: tuple[float, float, 
     return Damage(name, FindingKind.FLOATING, do)
 
 
+def sunk(metres: float, seconds: float) -> Damage:
+    """The whole body sinks for a moment and comes back, about where its hips are lowest, which is
+    after a landing, before a take-off, or amid a step."""
+
+    def do(recording: Recording, _: np.random.Generator) -> Damaged:
+        hips = recording.heads[:, figure_of(recording).bones[0], 2]
+        margin = round(seconds * recording.rate)
+        middle = recording.times[margin + int(np.argmin(hips[margin:-margin]))]
+        since = np.clip((recording.times - middle) / seconds, -0.5, 0.5)
+        depth = metres * np.cos(np.pi * since) ** 2
+        away = depth[:, None] * np.array([0.0, 0.0, 1.0])
+        return Damaged(replace(recording, heads=recording.heads - away[:, None]), recording)
+
+    return Damage(f"sinks {100 * metres:g} cm in {seconds:g} s", FindingKind.SINKING, do)
+
+
 def raised(metres: float) -> Damage:
     """Off the floor, or in it."""
 
@@ -403,6 +419,7 @@ DAMAGES = (
     floating(0.05, 2.0),
     floating(0.15, 3.0),
     swaying(0.1, 3.0),
+    *(sunk(0.1, seconds) for seconds in (0.2, 0.4)),
     *map(raised, (-0.2, -0.05, 0.1, 0.5)),
     levelled(),
     noisy(3.0, 1.0),

@@ -48,6 +48,8 @@ SENTENCES = {
     FindingKind.SLIDING: "The whole body slides along the floor at {n:.2f} m/s while it stands.",
     FindingKind.FLOATING: "The whole body floats about: feet that stand flat move by up to "
     "{n:.0f} cm, as capture by one camera has it.",
+    FindingKind.SINKING: "The feet are up to {n:.0f} cm below the floor that they stand on "
+    "elsewhere, {part} most, {where}.",
     FindingKind.FLICKER: "{part} and others leave the floor for moments and come back {where}.",
     FindingKind.UNSEEN_SUPPORT: "Nothing touches, yet the body does not fall {where}: something "
     "carries it that the recording does not show.",
@@ -62,6 +64,7 @@ SENTENCES = {
 ADVICE = {
     FindingKind.JUMP: " Choose frames on one side of it.",
     FindingKind.LEAP: " Choose frames without it.",
+    FindingKind.SINKING: " Raise the hips there, by the depth, or choose frames without it.",
     FindingKind.LEVEL_HIPS: " Export the recording again with the hips' height.",
 }
 

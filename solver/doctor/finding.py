@@ -32,6 +32,7 @@ class FindingKind(Enum):
     RISING = "rising"
     SLIDING = "sliding"
     FLOATING = "floating"
+    SINKING = "sinking"
     FLICKER = "flicker"
     UNSEEN_SUPPORT = "unseen support"
     SKIDDING = "skidding"

@@ -13,7 +13,10 @@ from ..repairs import Repairs
 from .diagnose import diagnose
 
 # What objects of the scene may explain: a box to stand on, a train, a belt.
-ABOUT_GROUND = (FindingKind.FLOOR, FindingKind.SLIDING, FindingKind.RISING, FindingKind.FLOATING)
+ABOUT_GROUND = (
+    *(FindingKind.FLOOR, FindingKind.SLIDING, FindingKind.RISING),
+    *(FindingKind.FLOATING, FindingKind.SINKING),
+)
 
 
 def faults_of(recording: Recording, problem: MotionProblem) -> list[Finding]:

@@ -16,6 +16,7 @@ from ...data.recording import Recording
 from ..falls import Spans
 from ..figure import Figure
 from ..finding import Finding, FindingKind
+from ..local_poses import runs
 from ..repairs import Repairs
 from .flat_feet import FLAT_SPEED, FlatSamples
 
@@ -34,6 +35,7 @@ LEAST_LEVEL = 0.3  # s of feet that stand flat, of which so much can be told
 ALIKE_RISE = 0.5  # of the rise, likewise
 STEADY = 0.5  # of the speed, by which those of half a clip may differ
 LEVELLED = 0.5  # of how much their heights differ, that is left without the rise
+SUNK = 0.06  # m below the floor; honest soles go 5 cm below the lowest of uneven ones
 FLICKER_GAP = 0.12  # s; a foot cannot leave its place and come back in less
 FLICKER_PLACE = 0.03  # m
 FLICKERS = 3
@@ -42,13 +44,18 @@ FLICKERS = 3
 def find_footing(
     performance: Performance, schedule: ContactSchedule | None = None
 ) -> list[Finding]:
-    """Floor, flicker, unseen support, feet that skid, and a clip that begins or ends in the air.
+    """Floor, feet below it, flicker, unseen support, feet that skid, and a clip that begins or ends
+    in the air.
 
     performance: as seen from what it stands on. schedule: its contacts, with the scene's ground;
     None for those with the floor alone.
     """
     schedule = find_contacts(performance) if schedule is None else schedule
-    found = [_floor(performance, schedule), _flicker(performance, schedule)]
+    found = [
+        _floor(performance, schedule),
+        _sinking(performance),
+        _flicker(performance, schedule),
+    ]
     skids = skids_in(performance, schedule.unseen)
     notes = [
         (FindingKind.UNSEEN_SUPPORT, tuple(u for u in schedule.unseen if u not in skids)),
@@ -72,6 +79,23 @@ def _floor(performance: Performance, schedule: ContactSchedule) -> Finding | Non
     if abs(floor) <= FLOOR_OFF:
         return None
     return Finding(FindingKind.FLOOR, floor, "m", remedy=Repairs(floor=floor))
+
+
+def _sinking(performance: Performance) -> Finding | None:
+    """Feet that are for more than a frame deeper than the lowest height on which they stand: a
+    moment of it changes neither the floor nor the spread of heights that tells a floating body."""
+    points, floor = contact_points(performance)
+    feet = {name: p for name, p in points.items() if p.kind is not PointKind.HAND}
+    depths = np.stack([floor - point.track[:, 2] for point in feet.values()])
+    places = [(first, last) for first, last in runs(depths.max(axis=0) > SUNK) if first < last]
+    if not places:
+        return None
+    worst = max(places, key=lambda place: depths[:, place[0] : place[1] + 1].max())
+    deepest = depths[:, worst[0] : worst[1] + 1].max(axis=1)
+    frames = performance.recording.frames
+    spans = tuple((float(frames[first]), float(frames[last])) for first, last in places)
+    part = [*feet][int(np.argmax(deepest))]
+    return Finding(FindingKind.SINKING, 100.0 * float(deepest.max()), "cm", spans, part)
 
 
 def find_sliding(performance: Performance, figure: Figure) -> Finding | None:

@@ -10,6 +10,7 @@ from hangtime.devtools.doctor.damages import (
     raised,
     rising,
     sliding,
+    sunk,
 )
 from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.analysis.analyse import analyse
@@ -130,6 +131,26 @@ def test_feet_that_skid_while_they_stand_are_told_as_such() -> None:
     (told,) = analyse(skidded, MotionProblem()).unseen
     assert isinstance(told, UnseenSupport)
     assert (told.skidding, told.boxes) == (True, ())
+
+
+@pytest.mark.parametrize("seconds", [0.15, 0.2, 0.3])
+def test_feet_below_the_floor_for_a_moment_are_told_with_its_frames(seconds: float) -> None:
+    damaged = sunk(0.09, seconds).of(jump()).recording
+    deep = jump().heads[:, 0, 2] - damaged.heads[:, 0, 2] > 0.05
+    (found,) = (f for f in diagnose(damaged).findings if not f.kind.note)
+    ((first, last),) = found.frames
+    assert found.kind is FindingKind.SINKING
+    assert found.amount == pytest.approx(9.0, abs=2.0)
+    inside = (jump().frames >= first) & (jump().frames <= last)
+    assert deep[inside].all()
+    assert inside[deep].mean() > 0.7
+
+
+@pytest.mark.parametrize("name", ["01_01.amc", "run_2.bvh", "hops_in_place.bvh"])
+def test_soles_on_uneven_floors_and_toes_that_strike_do_not_sink(name: str) -> None:
+    recording = load_recording(name)
+    found = find_footing(perform(recording, build_character(recording)))
+    assert FindingKind.SINKING not in {finding.kind for finding in found}
 
 
 def test_feet_that_float_sink_or_slide_are_told_by_point_and_frames() -> None:
