@@ -332,6 +332,17 @@ def levelled() -> Damage:
     return Damage("hips level", FindingKind.LEVEL_HIPS, do)
 
 
+def in_place() -> Damage:
+    """The hips' way along the floor left out, as exports in place do."""
+
+    def do(recording: Recording, _: np.random.Generator) -> Damaged:
+        hips = recording.heads[:, figure_of(recording).bones[0]]
+        away = (hips - hips[0]) * [1.0, 1.0, 0.0]
+        return Damaged(replace(recording, heads=recording.heads - away[:, None]), recording)
+
+    return Damage("in place", FindingKind.IN_PLACE, do)
+
+
 def noisy(millimetres: float, degrees: float, rate: float = VIDEO_RATE) -> Damage:
     """As video capture gives it: white noise on the root's place and on all joints."""
 
@@ -422,6 +433,7 @@ DAMAGES = (
     *(sunk(0.1, seconds) for seconds in (0.2, 0.4)),
     *map(raised, (-0.2, -0.05, 0.1, 0.5)),
     levelled(),
+    in_place(),
     noisy(3.0, 1.0),
     noisy(3.0, 1.0, FAST_RATE),
     noisy(6.0, 2.0),

@@ -46,6 +46,9 @@ SENTENCES = {
     FindingKind.FLOOR: "The feet stand at a height of {n:.2f} m, not on the floor at 0.",
     FindingKind.RISING: "The whole body drifts {way} at {speed:.2f} m/s while it stands.",
     FindingKind.SLIDING: "The whole body slides along the floor at {n:.2f} m/s while it stands.",
+    FindingKind.IN_PLACE: "The hips keep their place, and the feet that carry the body slide at "
+    "{n:.1f} m/s {where}: their way along the floor was left out, as exports “In Place” do, or "
+    "the performer went on a treadmill, which is the same.",
     FindingKind.FLOATING: "The whole body floats about: feet that stand flat move by up to "
     "{n:.0f} cm, as capture by one camera has it.",
     FindingKind.SINKING: "The feet are up to {n:.0f} cm below the floor that they stand on "
@@ -64,6 +67,7 @@ SENTENCES = {
 ADVICE = {
     FindingKind.JUMP: " Choose frames on one side of it.",
     FindingKind.LEAP: " Choose frames without it.",
+    FindingKind.IN_PLACE: " Export the recording again without “In Place”.",
     FindingKind.SINKING: " Raise the hips there, by the depth, or choose frames without it.",
     FindingKind.LEVEL_HIPS: " Export the recording again with the hips' height.",
 }
@@ -85,6 +89,7 @@ REMEDIES = {
     FindingKind.FLOOR: "Put on the Floor",
     FindingKind.RISING: "Hold Level",
     FindingKind.SLIDING: "Hold Still",
+    FindingKind.IN_PLACE: "Give the Way Back",
     FindingKind.FLOATING: "Hold to the Ground",
 }
 REPAIR = "Repair"

@@ -31,6 +31,7 @@ class FindingKind(Enum):
     FLOOR = "floor"
     RISING = "rising"
     SLIDING = "sliding"
+    IN_PLACE = "in place"
     FLOATING = "floating"
     SINKING = "sinking"
     FLICKER = "flicker"

@@ -13,6 +13,7 @@ from ..falls import Trusted, find_scale, refined
 from ..finding import Finding, FindingKind
 from ..repairs import Repairs
 from ..stance.footing import spans_of
+from ..stance.in_place import find_in_place
 
 
 def find_scales(
@@ -41,9 +42,10 @@ def find_scales(
 
 
 def _slow_fall(performance: Performance, schedule: ContactSchedule) -> Finding | None:
-    """A wrong clock by which most of the time in the air is no fall, as an analysis refuses it."""
+    """A wrong clock by which most of the time in the air is no fall, as an analysis refuses it.
+    Feet that slide below hips in place carry, though no contact is found of them."""
     rate = agreed_rate(performance, schedule)
-    if rate is None:
+    if rate is None or find_in_place(performance) is not None:
         return None
     factor = performance.recording.rate / rate
     places = spans_of(performance, schedule.unseen)

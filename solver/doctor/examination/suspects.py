@@ -15,7 +15,7 @@ from .diagnose import diagnose
 # What objects of the scene may explain: a box to stand on, a train, a belt.
 ABOUT_GROUND = (
     *(FindingKind.FLOOR, FindingKind.SLIDING, FindingKind.RISING),
-    *(FindingKind.FLOATING, FindingKind.SINKING),
+    *(FindingKind.IN_PLACE, FindingKind.FLOATING, FindingKind.SINKING),
 )
 
 

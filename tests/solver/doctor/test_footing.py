@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hangtime.devtools.doctor.damages import (
     Damage,
+    in_place,
     noisy,
     raised,
     rising,
@@ -18,11 +19,13 @@ from hangtime.solver.analysis.performance import find_contacts, perform
 from hangtime.solver.body.character import build_character
 from hangtime.solver.data.faults import UnseenSupport
 from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.examination.repair import repaired
 from hangtime.solver.doctor.finding import FindingKind
 from hangtime.solver.doctor.stance.feet import FootFaultKind, find_feet
 from hangtime.solver.doctor.stance.footing import find_footing, find_rise, find_sliding
+from hangtime.solver.doctor.stance.in_place import find_in_place
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.doctored import character, figure, jump
 
@@ -85,7 +88,7 @@ def test_a_run_on_a_treadmill_stands_on_the_floor(name: str) -> None:
     pace = (com[-1] - com[0]) / recording.times[-1] * np.array([1.0, 1.0, 0.0])
     heads = recording.heads - (recording.times[:, None] * pace)[:, None]
     kinds = {f.kind for f in diagnose(replace(recording, heads=heads)).findings}
-    assert FindingKind.SLIDING in kinds
+    assert FindingKind.IN_PLACE in kinds
     assert FindingKind.FLOOR not in kinds
 
 
@@ -117,6 +120,50 @@ def test_a_dance_of_which_little_stands_does_not_slide(first: float) -> None:
     dance = load_recording("rokoko_jesse_dance.bvh")
     kinds = {finding.kind for finding in diagnose(dance.window(first, 500.0)).findings}
     assert FindingKind.SLIDING not in kinds
+
+
+@pytest.mark.parametrize("name", ["run_1.bvh", "run_3.bvh", "BMC_run.bvh"])
+@pytest.mark.parametrize("belt", [False, True])
+def test_hips_in_place_above_steady_feet_get_their_way_back(name: str, *, belt: bool) -> None:
+    """A treadmill is the same, whose hips go to and fro."""
+    run = load_recording(name)
+    damaged = treadmill(run) if belt else in_place().of(run).recording
+    found = diagnose(damaged)
+    (told,) = (f for f in found.findings if not f.kind.note)
+    assert told.kind is FindingKind.IN_PLACE
+    assert told.frames
+    assert told.amount == pytest.approx(speed_of(run), rel=0.15)
+    assert apart(repaired(damaged, found.repairs), run) < 0.12 * apart(damaged, run)
+    again = diagnose(repaired(damaged, found.repairs)).findings
+    assert [f for f in again if not f.kind.note] == []
+
+
+def speed_of(recording: Recording) -> float:
+    """M/s, of the hips along the floor, in the mean."""
+    way = recording.heads[-1, 0] - recording.heads[0, 0]
+    return float(np.linalg.norm(way[:2]) / recording.times[-1])
+
+
+def treadmill(recording: Recording) -> Recording:
+    """Without the hips' mean velocity."""
+    way = (recording.heads[-1, 0] - recording.heads[0, 0]) * [1.0, 1.0, 0.0]
+    share = recording.times / recording.times[-1]
+    return replace(recording, heads=recording.heads - (share[:, None] * way)[:, None])
+
+
+@pytest.mark.parametrize("name", ["forward_jump_116cm.bvh", "fair1_jumping.bvh"])
+def test_a_jump_in_place_is_told_without_a_remedy(name: str) -> None:
+    """Its clock was told to be wrong, or nothing: what it does in flight the feet do not tell."""
+    damaged = in_place().of(load_recording(name)).recording
+    (told,) = (f for f in diagnose(damaged).findings if not f.kind.note)
+    assert (told.kind, told.remedy) == (FindingKind.IN_PLACE, None)
+    assert told.amount > 0.2
+
+
+@pytest.mark.parametrize("name", ["hops_in_place.bvh", "high_jump.bvh", "run_2.bvh"])
+def test_who_moves_on_one_spot_or_goes_along_the_floor_is_not_in_place(name: str) -> None:
+    recording = load_recording(name)
+    assert find_in_place(perform(recording, build_character(recording))) is None
 
 
 def test_feet_that_skid_while_they_stand_are_told_as_such() -> None:
