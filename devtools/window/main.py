@@ -55,6 +55,7 @@ MAKE_RIG = """blender -b --factory-startup --python-exit-code 3 --python-expr \
 run_path('/mnt/source/devtools/package.py')['load']()
 from hangtime.devtools.rigs.controls.performed_file import main
 main(['/tmp/artist.rigify.blend'])" """
+RIG = "rig_"  # what the names of its scenes begin with
 VARIABLES = {
     "DISPLAY": ":84",
     "LIBGL_ALWAYS_SOFTWARE": "1",
@@ -74,6 +75,9 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--suite", default=SUITE, help="Debian's; has its own Blender")
     parser.add_argument("--scenes", nargs="+", metavar="NAME", help="only these and their needs")
     parser.add_argument(
+        "--without-rig", action="store_true", help="leave out the scenes of the generated rig"
+    )
+    parser.add_argument(
         "--manual", action="store_true", help="only renew the manual's pictures, in docs/images"
     )
     parser.add_argument("--prepare", action="store_true", help="only make the place it runs in")
@@ -86,7 +90,8 @@ def main(argv: list[str]) -> int:
         with tempfile.TemporaryDirectory() as folder:
             zipped = options.zip or own_zip(Path(folder))
             scenes = [*manual_images.SCENARIOS.values()] if options.manual else options.scenes or []
-            record = run(sandbox, zipped.resolve(), options.out.resolve(), scenes)
+            without = RIG if options.without_rig else ""
+            record = run(sandbox, zipped.resolve(), options.out.resolve(), scenes, without)
     except (SetUpError, BuildError) as problem:
         print(problem, file=sys.stderr)
         return 2
@@ -111,8 +116,11 @@ def own_zip(folder: Path) -> Path:
     return next(zipped for zipped in build(folder) if zipped.name.endswith(ending))
 
 
-def run(sandbox: Sandbox, zipped: Path, out: Path, scenarios: list[str]) -> RunRecord:
-    """Run the scenarios in the sandbox; pictures and Blender's log go to `out`."""
+def run(
+    sandbox: Sandbox, zipped: Path, out: Path, scenarios: list[str], without: str = ""
+) -> RunRecord:
+    """Run the scenarios in the sandbox; pictures and Blender's log go to `out`. without: what the
+    names of those begin with that are left out where none is chosen."""
     for stale in (*out.glob("*.png"), *(out / manual_images.TAKEN).glob("*.png"), out / "run.json"):
         stale.unlink(missing_ok=True)
     mounts = [
@@ -122,11 +130,11 @@ def run(sandbox: Sandbox, zipped: Path, out: Path, scenarios: list[str]) -> RunR
         Mount(out, "/mnt/out", writable=True),
     ]
     rig = ""
-    if not scenarios or any(name.startswith("rig_") for name in scenarios):
+    if any(name.startswith(RIG) for name in scenarios) or not (scenarios or without == RIG):
         rig = MAKE_RIG
         mounts.append(Mount(ROOT, "/mnt/source"))
     script = SCRIPT.format(width=SIZE[0], height=SIZE[1], zip=zipped.name, rig=rig)
-    variables = {**VARIABLES, "SCENARIOS": " ".join(scenarios)}
+    variables = {**VARIABLES, "SCENARIOS": " ".join(scenarios), "WITHOUT": without}
     log = out / "blender.log"
     print(f"Running in Blender's window; its output goes to {log}", flush=True)
     code = sandbox.run(script, mounts=mounts, variables=variables, limit=LIMIT, log=log)

@@ -46,15 +46,17 @@ def start() -> None:
     driver = Driver(OUT, device, Screen(device), Profiler(FOLDER))
     ending.callback(bpy.ops.wm.quit_blender)
     ending.callback(driver.keep)
-    wanted = chosen(os.environ.get("SCENARIOS", "").split())
+    names, without = os.environ.get("SCENARIOS", "").split(), os.environ.get("WITHOUT", "")
+    wanted = chosen(names, without)
     drive_by_timer(run_scenarios(driver, wanted), ending.close)
 
 
-def chosen(names: Sequence[str]) -> list[Scenario]:
+def chosen(names: Sequence[str], without: str) -> list[Scenario]:
     """The scenarios of those names and whatever they need, in order; where no name is given all
-    but those that only take pictures for the manual."""
+    but those that only take pictures for the manual, and those whose names begin with `without`."""
     usual = {scenario.name for scenario in SCENARIOS if scenario not in manual.SCENARIOS}
-    wanted = set(names) or usual
+    left_out = {name for name in usual if without and name.startswith(without)}
+    wanted = set(names) or usual - left_out
     for scenario in reversed(SCENARIOS):
         if scenario.name in wanted:
             wanted.update(scenario.needs)
