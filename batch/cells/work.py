@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
+from ...bridge.formats.acclaim import clip_files
 from ...bridge.recipe.export import ExportOptions
 from ...bridge.recipe.keys import KeyOptions, require_every_frame
 from ...bridge.recipe.objects import placed_objects
@@ -30,7 +31,7 @@ from ...solver.doctor.examination.diagnose import diagnose
 from ...solver.results.report import fit_quality
 from ...solver.worker.pipeline import Subject, measure, no_fit, solve
 from ..planning.blender_need import needs_blender, require_blender
-from ..planning.clips import clip_files, clip_sha256
+from ..planning.clips import clip_sha256
 from ..planning.recipes import VariedRecipe
 from ..records.faults import WrongPlan
 from ..records.manifest import BatchSettings, CellPlan, Output

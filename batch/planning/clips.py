@@ -8,8 +8,7 @@ from collections.abc import Collection, Sequence
 from glob import glob
 from pathlib import Path
 
-from ...bridge.formats.acclaim import find_asf
-from ...solver.data.faults import UnreadableClip
+from ...bridge.formats.acclaim import clip_files
 from ..records.faults import WrongPlan
 
 IN_FOLDERS = (".bvh", ".amc", ".fbx")  # a .blend is taken where it is named itself
@@ -62,16 +61,6 @@ def absolute(path: str | Path) -> str:
     except UnicodeEncodeError as error:
         raise WrongPlan(f"The name of {made!a} is no text; give the file another name.") from error
     return made
-
-
-def clip_files(path: str) -> tuple[Path, ...]:
-    """A clip's file, and the skeleton that an AMC file needs, where there is one."""
-    if not path.lower().endswith(".amc"):
-        return (Path(path),)
-    try:
-        return Path(path), find_asf(path)
-    except UnreadableClip:  # told when it is read
-        return (Path(path),)
 
 
 def clip_sha256(path: str) -> str:

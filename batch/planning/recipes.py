@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ...bridge.recipe.objects import HEADER as OBJECT
+from ...bridge.recipe.objects import object_files
 from ...bridge.recipe.problem import Recipe, read_recipe_text, recipe_of
 from ...bridge.recipe_syntax.source_lines import KeyPath
 from ...bridge.recipe_syntax.table import Source
@@ -85,18 +85,14 @@ class VariedRecipe:
     def sha256(self, resolved: dict[str, Any]) -> str:
         """Of resolved values and of the files that they name; comments and layout do not count."""
         content = hashlib.sha256(json.dumps(resolved, sort_keys=True, default=str).encode())
-        for mesh in self._meshes(resolved):
+        for mesh in object_files(resolved, self.path):
             content.update(mesh.read_bytes())
         return content.hexdigest()
 
     @property
     def files(self) -> tuple[Path, ...]:
         """The recipe's file, and those that it names."""
-        return (Path(self.path), *self._meshes(self.values)) if self.path else ()
-
-    def _meshes(self, values: dict[str, Any]) -> list[Path]:
-        folder, things = Path(self.path).parent, values.get(OBJECT, ())
-        return [folder / thing["file"] for thing in things if "file" in thing]
+        return (Path(self.path), *object_files(self.values, self.path)) if self.path else ()
 
 
 def name_of(values: dict[str, Any], place: KeyPath) -> str:

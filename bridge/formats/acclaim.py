@@ -65,6 +65,20 @@ def find_asf(amc: str | Path) -> Path:
     raise UnreadableClip(str(amc), None, f"{count} ASF file lies beside it")
 
 
+def clip_files(path: str | Path, asf: str | Path | None = None) -> tuple[Path, ...]:
+    """A clip's file, and the skeleton that an AMC file needs, where there is one. asf: the one that
+    was stated."""
+    path = Path(path)
+    if path.suffix.lower() != ".amc":
+        return (path,)
+    if asf is not None:
+        return path, Path(asf)
+    try:
+        return path, find_asf(path)
+    except UnreadableClip:  # told when it is read
+        return (path,)
+
+
 def read_acclaim(
     asf_path: str | Path, amc_path: str | Path, rate: float | None = None
 ) -> MotionClip:

@@ -20,9 +20,10 @@ forward = 0.2                   # m from there along the travel; left, up, back,
 How it moves beside its path is in object_rates.py.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -75,6 +76,12 @@ def read_objects(top: Table) -> tuple[tuple[SceneObject, ...], tuple[Under, ...]
             table.not_both("under", PLACING)
             under.append(Under(thing, what, travelled(table)))
     return tuple(placed), tuple(under)
+
+
+def object_files(values: Mapping[str, Any], path: str | Path) -> tuple[Path, ...]:
+    """The files that a recipe's objects are read from. values: of its text. path: of its file."""
+    things = values.get(HEADER, ())
+    return tuple(Path(path).parent / thing["file"] for thing in things if "file" in thing)
 
 
 def default_name(i: int) -> str:

@@ -86,7 +86,7 @@ from .keys import KEYS, KeyOptions
 from .loop import LOOP, LoopOptions
 from .object_texts import object_text
 from .objects import HEADER as OBJECT
-from .objects import Under, default_name, read_objects
+from .objects import Under, default_name, object_files, read_objects
 from .recording import RECORDING
 from .requests import NAMED, REQUEST_KEYS, read_requests, request_texts
 from .result import RESULT, ResultOptions
@@ -138,7 +138,7 @@ class Recipe:
     """Parsed recipe. clip: a path as written, relative to the recipe; None where not given.
 
     under: objects of which the analysis is to tell the places. repairs: of the recording. result,
-    keys, loop, export: None where not given.
+    keys, loop, export: None where not given. meshes: files that objects were read from.
     """
 
     problem: MotionProblem
@@ -149,6 +149,7 @@ class Recipe:
     loop: LoopOptions | None = None
     export: ExportOptions | None = None
     repairs: Repairs | None = None
+    meshes: tuple[Path, ...] = ()
 
 
 def read_recipe_text(path: str | Path) -> str:
@@ -213,7 +214,8 @@ def recipe_of(values: dict[str, Any], source: Source) -> Recipe:
     loop = LOOP.read(table) if problem.loop else None
     export = EXPORT.read(table) if EXPORT.header in table.values else None
     repairs = RECORDING.read(table) if RECORDING.header in table.values else None
-    return Recipe(problem, table.word("clip"), under, result, keys, loop, export, repairs)
+    meshes = object_files(values, source.path)
+    return Recipe(problem, table.word("clip"), under, result, keys, loop, export, repairs, meshes)
 
 
 def locate(text: str, fault: Fault) -> int | None:

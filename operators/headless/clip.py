@@ -7,6 +7,7 @@ from math import ceil, floor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...bridge.formats.acclaim import clip_files
 from ...solver.analysis.take import require_inside
 from ...solver.data.faults import ClipNotOpened, MirroredInBlender, NoArmature
 from ...solver.data.problem import MotionProblem
@@ -42,6 +43,11 @@ class Clip:
     up: UpAxis | None = None
     rate: float | None = None
     asf: Path | None = None
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """What it is read from: its file, and an AMC file's skeleton, where there is one."""
+        return clip_files(self.path, self.asf)
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ from .doctor import examined, told, write_recipe_of
 from .doubts import doubts_about
 from .explained import CANCELLED, NO_SOLUTION, WRONG_INPUT, explained
 from .outbox import Outbox, not_writable
-from .outputs import Outputs, require_apart, require_exported, require_place
+from .outputs import Outputs, linked_files, require_apart, require_exported, require_place
 from .stages import WIDTH, Stages
 
 
@@ -164,9 +164,11 @@ def adapt(options: argparse.Namespace) -> None:
     if recipe.loop is not None:
         require_every_frame(keys)
     stages = Stages(sys.stdout)
-    require_apart(clip.path, options.out, export)
+    inputs = (*clip.files, options.recipe, *recipe.meshes)
+    require_apart(inputs, options.out, export)
     with Outbox(options.out) as outbox:
         loaded = load(clip, problem, stages, recipe.repairs)
+        require_apart(linked_files(), options.out, export)
         require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
         require_place(loaded, wanted, recipe.loop)
         require_exported(loaded, options.out, export)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,7 @@ from ...bridge.recipe.keys import KeyOptions
 from ...bridge.recipe.loop import LoopOptions
 from ...bridge.recipe.result import ResultOptions
 from ...bridge.rows.choices import FileFormat, KeyChoice, LoopRoot, WrittenAs
-from ...solver.data.faults import OutputNotWritable, WouldReplaceRecording
+from ...solver.data.faults import OutputNotWritable, WouldReplaceInput
 from ...solver.data.reports.keys import KeysReport
 from ...solver.data.reports.report import Report
 from ...solver.data.scaling import scaled_problem
@@ -23,7 +24,7 @@ from ...solver.worker.pipeline import AdaptationResult
 from .clip import LoadedClip
 from .outbox import Outbox
 from .quiet import quiet
-from .result_files import write_report, write_trajectory
+from .result_files import REPORTS, TRAJECTORY, write_report, write_trajectory
 from .stages import Stages
 
 if TYPE_CHECKING:  # as in clip.py
@@ -38,14 +39,25 @@ if TYPE_CHECKING:  # as in clip.py
 EXPORTED = "adapted"  # file name without ending
 SAVED = f"{EXPORTED}.blend"
 BEST = "best_found.blend"
+PICTURE = "sheet.png"
 ASIDE = 1.5  # m; how far the recording stands beside the adapted figure
 
 
-def require_apart(recording: Path, folder: Path, export: ExportOptions) -> None:
-    """Before a solve takes its seconds. Raises WouldReplaceRecording."""
-    for written in (_exported(folder, export), folder / SAVED, folder / BEST):
-        if recording.exists() and written.exists() and written.samefile(recording):
-            raise WouldReplaceRecording(str(written))
+def require_apart(inputs: Iterable[Path], folder: Path, export: ExportOptions) -> None:
+    """Before a solve takes its seconds. inputs: what a job reads. Raises WouldReplaceInput."""
+    names = (SAVED, BEST, PICTURE, TRAJECTORY, *REPORTS)
+    results = (_exported(folder, export), *(folder / name for name in names))
+    there = [path for path in results if path.exists()]
+    for read, written in product(inputs, there):
+        if read.exists() and written.samefile(read):
+            raise WouldReplaceInput(str(written))
+
+
+def linked_files() -> tuple[Path, ...]:
+    """What the scene in Blender is made from beside its own file: libraries, images."""
+    import bpy
+
+    return tuple(map(Path, bpy.utils.blend_paths(absolute=True)))
 
 
 def require_exported(clip: LoadedClip, folder: Path, export: ExportOptions) -> None:
@@ -150,7 +162,7 @@ class Outputs:
         if picture:
             with self.stages.stage("Drawing the picture"), quiet():
                 marks = marks_of(adaptation, self.result.subject.problem)
-                draw(adaptation, problem, self.outbox.path("sheet.png"), marks)
+                draw(adaptation, problem, self.outbox.path(PICTURE), marks)
         if film:
             with self.stages.stage("Drawing the film"), quiet():
                 marks = marks_of(adaptation, self.result.subject.problem)

@@ -13,6 +13,7 @@ from ..words.report_text import as_text
 from .outbox import Outbox, not_writable
 
 TRAJECTORY = "trajectory.npz"
+REPORTS = "report.json", "report.txt"  # for programs, for people
 
 
 def write_trajectory(result: AdaptationResult, outbox: Outbox) -> None:
@@ -35,8 +36,8 @@ def write_report(
     Raises OutputNotWritable.
     """
     records = {**as_json(report), **more}
-    outbox.write_text("report.json", json.dumps(records, indent=1, allow_nan=False) + "\n")
+    outbox.write_text(REPORTS[0], json.dumps(records, indent=1, allow_nan=False) + "\n")
     outbox.write_text(
-        "report.txt",
+        REPORTS[1],
         "\n".join([as_text(report), *last, *([""] if last else [])]),
     )

@@ -154,7 +154,7 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     ),
     faults.OutputNotWritable: "Nothing can be written to {path} ({problem}); choose another place "
     "or allow writing there.",
-    faults.WouldReplaceRecording: "The result would be written over its own recording, {path}; "
+    faults.WouldReplaceInput: "The result would be written over {path}, from which it is made; "
     "choose another folder with --out.",
     faults.ContradictoryPins: "“{first}” and “{second}” contradict each other by {metres:length}; "
     "no pose holds both, so move one of them or move them together.",

@@ -119,5 +119,5 @@ from .solving import NotComputable as NotComputable
 from .solving import OutputNotWritable as OutputNotWritable
 from .solving import PinLetGo as PinLetGo
 from .solving import WorkerDied as WorkerDied
-from .solving import WouldReplaceRecording as WouldReplaceRecording
+from .solving import WouldReplaceInput as WouldReplaceInput
 from .solving import computable as computable

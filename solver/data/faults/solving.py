@@ -30,8 +30,9 @@ class OutputNotWritable(Fault):
 
 
 @dataclass
-class WouldReplaceRecording(Fault):
-    """A file of the result would take the place of the recording that it is made from."""
+class WouldReplaceInput(Fault):
+    """A file of the result would take the place of one that it is made from: the recording, its
+    skeleton, the recipe, an object's mesh, what a scene links."""
 
     path: str
 

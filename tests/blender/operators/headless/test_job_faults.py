@@ -70,9 +70,59 @@ def test_a_result_never_takes_the_place_of_its_recording(
         bpy.ops.export_scene.fbx(filepath=str(recording))
     before = recording.read_bytes()
     assert run(tmp_path, recording, EDIT, "--no-picture") == 2
-    assert "written over its own recording" in one_line(capsys)
+    assert f"written over {recording}" in one_line(capsys)
     assert [recording] == list(recording.parent.iterdir())
     assert recording.read_bytes() == before
+
+
+OBJECT = '[[object]]\nname = "Crate"\n'
+MESH = "".join(f"v {corner}\n" for corner in ("0 0 0", "1 0 0", "0 1 0")) + "f 1 2 3\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "recipe", "options"),
+    [
+        ("report.txt", MESH, OBJECT + 'file = "out/report.txt"\n', ()),
+        ("trajectory.npz", "a skeleton", "", ("--asf", "out/trajectory.npz")),
+        ("report.json", "{}", None, ()),
+    ],
+)
+def test_a_result_takes_the_place_of_nothing_that_it_is_made_from(
+    name: str,
+    text: str,
+    recipe: str | None,
+    options: tuple[str, ...],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys,
+) -> None:
+    """An object's mesh, an AMC file's skeleton, and the recipe itself."""
+    monkeypatch.chdir(tmp_path)
+    read, edit = Path("out", name), Path("edit.toml")
+    read.parent.mkdir()
+    read.write_text(text)
+    edit.write_text(recipe or "")
+    asked = read if recipe is None else edit
+    assert main(["adapt", "jump.amc", "--recipe", str(asked), "--out", "out", *options]) == 2
+    assert f"written over {read}, from which it is made" in one_line(capsys)
+    assert [read] == list(read.parent.iterdir())
+    assert read.read_text() == text
+
+
+def test_nor_of_what_its_scene_links(clip: Path, tmp_path: Path, capsys) -> None:
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    library, scene = tmp_path / "out" / "adapted.blend", tmp_path / "scene.blend"
+    library.parent.mkdir()
+    bpy.data.libraries.write(str(library), {bpy.data.worlds.new("Sky")}, fake_user=True)
+    import_clip(clip)
+    with bpy.data.libraries.load(str(library), link=True) as (_, wanted):
+        wanted.worlds = ["Sky"]
+    bpy.context.scene.world = bpy.data.worlds["Sky", str(library)]
+    bpy.ops.wm.save_as_mainfile(filepath=str(scene))
+    before = library.read_bytes()
+    assert run(tmp_path, scene, EDIT, "--no-picture") == 2
+    assert f"written over {library}" in one_line(capsys)
+    assert library.read_bytes() == before
 
 
 def test_a_truncated_clip_is_said_with_its_line(clip: Path, tmp_path: Path, capsys) -> None:
