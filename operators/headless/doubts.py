@@ -10,7 +10,14 @@ from ...solver.doctor.figure import figure_of
 from ...solver.doctor.repairs import Repairs
 from ...solver.doctor.upright import find_up
 from ...solver.worker.pipeline import Subject
-from ..words.doubt_text import damage_doubts, doubts_of, file_doubts, floor_doubts, up_doubts
+from ..words.doubt_text import (
+    damage_doubts,
+    distance_doubts,
+    doubts_of,
+    file_doubts,
+    floor_doubts,
+    up_doubts,
+)
 
 
 def doubts_about(
@@ -22,6 +29,7 @@ def doubts_about(
         problem, subject.height, frames[:0] if problem.loop else frames
     )
     unscaled = scaled_recording(subject.recording, 1.0 / subject.factor)
+    doubts += distance_doubts(problem, unscaled.heads)
     doubts += damage_doubts(faults_of(unscaled, problem))
     if repairs is None:
         return doubts

@@ -55,7 +55,7 @@ from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
-from ..words.doubt_text import doubts_of
+from ..words.doubt_text import distance_doubts, doubts_of
 from .common import chosen_armature, hindrance, quick_solution, refined_solution, required_armature
 from .keys import key_options
 from .live import live
@@ -129,7 +129,8 @@ class Adapting(TaskOperator):
         first, last = wanted_range(settings)
         frames = None if first is None or last is None else (first, last)
         meant = replace(asked.problem, frames=frames)
-        for doubt in doubts_of(meant, settings.measured_height, asked.recording.frames):
+        doubts = doubts_of(meant, settings.measured_height, asked.recording.frames)
+        for doubt in (*doubts, *distance_doubts(meant, asked.recording.heads)):
             self.report({"WARNING"}, doubt)
         return replace(asked, problem=replace(asked.problem, requests=requests))
 

@@ -1,7 +1,9 @@
 """Wording of what is legal but hardly meant, told before a fit takes its seconds."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from math import isfinite
+
+import numpy as np
 
 from ...solver.arrays import FloatArray
 from ...solver.data.problem import MotionProblem
@@ -18,6 +20,7 @@ MOST_CARRIED = 1.0  # body masses; a weightlifter moves more, but does not jump 
 MOST_GRAVITY = 25.0  # m/s², Jupiter's
 LONGEST, SHORTEST = 4.0, 0.25  # times a phase's duration
 A_FRAME = 1.0
+MOST_AWAY = 30.0  # m; the longest triple jumps go 18
 MOST_DAMAGES = 4
 SOLES = 0.1  # m, that the highest platform shoes put between foot and floor
 
@@ -33,6 +36,26 @@ def doubts_of(problem: MotionProblem, height: float, frames: FloatArray) -> list
         *_of_build(problem.mass, problem.height or height),
         *_of_loads(problem),
         *_of_timings(problem),
+    ]
+
+
+def distance_doubts(problem: MotionProblem, heads: FloatArray) -> list[str]:
+    """A line where pins or points are further from the recording than anybody means.
+
+    heads: (T, bones, 3) m, world; of the recording, in the lengths that the problem is in.
+    """
+    asked = (
+        *((pin.name, pin.place, pin.offset) for pin in problem.pins),
+        *((point.name, point.place, point.relative) for point in problem.requests.points),
+    )
+    off = {name: _away(place, shift, heads) for name, place, shift in asked}
+    far = {name: metres for name, metres in off.items() if metres > MOST_AWAY}
+    if not far:
+        return []
+    names, most = _quoted(far), max(far.values())
+    return [
+        f"{names}: {most:.0f} m away from the recording, further than anybody jumps; lengths "
+        "are in metres, and a whole scene is moved with its armature"
     ]
 
 
@@ -104,9 +127,8 @@ def _of_loads(problem: MotionProblem) -> Iterator[str]:
     mass = problem.requests.body.mass or problem.mass
     carried = sum(_share(load, mass) for load in loads)
     if carried > MOST_CARRIED:
-        yield (
-            f"{_listed(loads)}: {carried:.3g} times the body's own mass, with which nobody jumps"
-        )
+        names = _quoted(load.name for load in loads)
+        yield f"{names}: {carried:.3g} times the body's own mass, with which nobody jumps"
     if problem.requests.body.gravity > MOST_GRAVITY:
         yield (
             f"Gravity is {problem.requests.body.gravity:g} m/s², more than on any planet; "
@@ -124,5 +146,12 @@ def _share(load: AddedMass, mass: float) -> float:
     return (load.share or 0.0) if load.mass is None else load.mass / mass
 
 
-def _listed(loads: Sequence[AddedMass]) -> str:
-    return ", ".join(f"“{load.name}”" for load in loads)
+def _away(place: Sequence[float] | None, shift: Sequence[float], heads: FloatArray) -> float:
+    """How far, m, what is shifted off its place, else off the recording, is from the latter."""
+    if place is None:
+        return float(np.linalg.norm(shift))
+    return float(np.linalg.norm(heads - np.add(place, shift), axis=2).min())
+
+
+def _quoted(names: Iterable[str]) -> str:
+    return ", ".join(f"“{name}”" for name in names)

@@ -254,6 +254,9 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.TimedTwice: "“{request}” is the second to say how long “{phase}” takes; keep one.",
     faults.TooMuchTime: "With “{request}” the motion would be {seconds:.4g} s longer than it was "
     "recorded, and {most:g} s are the most that can be added; ask for less.",
+    faults.BeyondPrecision: "“{request}” moves what touches by {metres:.0f} m; beyond {most:.0f} m "
+    "places are too coarse for contacts. Lengths are in metres: move it less, or move the armature "
+    "with the whole scene.",
     faults.OutOfReach: "“{request}” is {metres:length} from “{other}”, with {seconds:.2f} s "
     "between them: nobody goes so far in that time. Move it nearer, give it more time, or switch "
     "Human Ranges off for a figure that is no human.",

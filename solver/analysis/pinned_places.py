@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..data.constants import UP
 from ..data.contacts import ContactSchedule, Phase, PhaseKind
-from ..data.faults import ContradictoryPins, UnknownContact, UnknownPhase
+from ..data.faults import BeyondPrecision, ContradictoryPins, UnknownContact, UnknownPhase
 from ..data.problem import MotionProblem, OffsetAxes, Pin
 from ..data.scene import SceneObject
 from ..scene.checks import named
@@ -17,6 +17,8 @@ from .performance import Performance
 
 SAME_BODY_TOLERANCE = 0.003  # m
 SAME_FOOT_TOLERANCE = 0.02  # m; toes bend
+# m; Blender's places are in single precision, which tells 0.06 mm there: contacts are held to that
+FURTHEST = 1000.0
 FOOT_LENGTH = 0.152  # of the stature (Drillis & Contini 1966)
 SLOW_WALK = 1.0  # m/s; a runner's flights are short, but he goes somewhere
 
@@ -38,7 +40,8 @@ def pinned_footing(
 
     standing: of pins on objects that move, the object as it is when they land.
 
-    Raises UnknownPhase, UnknownContact, ContradictoryPins, UnknownObject, and as `land` does.
+    Raises UnknownPhase, UnknownContact, BeyondPrecision, ContradictoryPins, UnknownObject, and as
+    `land` does.
     """
     places = np.array([c.place for c in schedule.contacts]).reshape(-1, 3)
     normals = np.tile(UP, (len(places), 1))
@@ -48,6 +51,7 @@ def pinned_footing(
         phase = phase_of(pin, schedule)
         chosen = chosen_contacts(pin, phase, schedule)
         target = _moved(pin, phase, chosen, performance, schedule)
+        _check_near(pin, places[chosen], target)
         if pin.on is not None:
             thing = (standing or {}).get(pin) or named(pin.name, pin.on, problem.scene)
             footing = _landed(pin, thing, chosen, target, performance, schedule)
@@ -62,6 +66,13 @@ def pinned_footing(
             moved_by[i] = pin
     _check_rigid(schedule, performance, places, moved_by)
     return Footing(places, normals, landed)
+
+
+def _check_near(pin: Pin, places: FloatArray, target: FloatArray) -> None:
+    """places, target: (k, 3) m. Raises BeyondPrecision."""
+    moved = float(np.linalg.norm(target - places, axis=1).max(initial=0.0))
+    if moved > FURTHEST:
+        raise BeyondPrecision(pin.name, moved, FURTHEST)
 
 
 def _landed(

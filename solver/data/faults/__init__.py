@@ -53,6 +53,7 @@ from .requests import AsksNothing as AsksNothing
 from .requests import BadDimensions as BadDimensions
 from .requests import BadTiming as BadTiming
 from .requests import BesideFrames as BesideFrames
+from .requests import BeyondPrecision as BeyondPrecision
 from .requests import BeyondReason as BeyondReason
 from .requests import CrossedBounds as CrossedBounds
 from .requests import DependentRows as DependentRows

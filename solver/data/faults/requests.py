@@ -205,6 +205,14 @@ class TooMuchTime(RequestFault):
 
 
 @dataclass
+class BeyondPrecision(RequestFault):
+    """A pin moves what touches by so many metres that places there are not told closely enough."""
+
+    metres: float
+    most: float
+
+
+@dataclass
 class OutOfReach(RequestFault):
     """A request's place is `metres` from that of `other`, `seconds` earlier or later: nobody can
     go so far in that time."""

@@ -4,9 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hangtime.operators.words.doubt_text import doubts_of, floor_doubts, up_doubts
-from hangtime.solver.data.problem import MotionProblem
-from hangtime.solver.data.requests import AddedMass, BodyChange, PhaseTiming, Requests
+from hangtime.operators.words.doubt_text import distance_doubts, doubts_of, floor_doubts, up_doubts
+from hangtime.solver.data.problem import MotionProblem, Pin
+from hangtime.solver.data.requests import (
+    AddedMass,
+    BodyChange,
+    PhaseTiming,
+    PointRequest,
+    Requests,
+    When,
+)
 from hangtime.solver.doctor.repairs import UpAxis
 
 FRAMES = np.arange(140.0, 331.0)
@@ -49,6 +56,28 @@ def test_usual_amounts_are_not_asked_about(problem: MotionProblem) -> None:
 def test_amounts_that_nobody_means_are_told(problem: MotionProblem, words: str) -> None:
     (told,) = doubts_of(problem, 1.76, FRAMES)
     assert words in told
+
+
+HEADS = np.array([[[0.0, 0.0, 1.0], [0.1, 0.0, 0.1]], [[2.0, 0.0, 1.0], [2.1, 0.0, 0.1]]])
+
+
+@pytest.mark.parametrize(
+    "pin",
+    [Pin("Landing", "ground 2", offset=(5.0, 0.0, 2.0)), Pin("On", "ground 2", place=(9, 0, 0))],
+)
+def test_places_within_a_jump_are_not_asked_about(pin: Pin) -> None:
+    assert distance_doubts(replace(USUAL, pins=(pin,)), HEADS) == []
+
+
+def test_places_that_nobody_means_are_told_by_name_and_the_furthest_distance() -> None:
+    pins = (
+        Pin("Near", "ground 1", offset=(0.1, 0.0, 0.0)),
+        Pin("Landing", "ground 2", offset=(40.0, 0.0, 0.0)),
+        Pin("Elsewhere", "ground 3", place=(102.1, 0.0, 0.1)),
+    )
+    points = (PointRequest("Moon", "Hand", When(), place=(52.0, 0.0, 1.0)),)
+    (told,) = distance_doubts(replace(USUAL, pins=pins, requests=Requests(points=points)), HEADS)
+    assert told.startswith("“Landing”, “Elsewhere”, “Moon”: 100 m away")
 
 
 def test_a_child_with_a_man_s_mass_is_told_by_its_measured_height() -> None:

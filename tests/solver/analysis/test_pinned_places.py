@@ -5,15 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hangtime.solver.analysis.analyse import analyse
-from hangtime.solver.analysis.pinned_places import pinned_places, travel_axes
+from hangtime.solver.analysis.pinned_places import FURTHEST, pinned_places, travel_axes
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.faults import (
+    BeyondPrecision,
     ContradictoryPins,
     UnknownContact,
     UnknownContactName,
     UnknownPhase,
 )
 from hangtime.solver.data.problem import ContactEdit, MotionProblem, OffsetAxes, Pin
+from hangtime.solver.data.requests import Vector
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, frames_of, hop
 
@@ -137,6 +139,19 @@ def test_two_pins_for_one_contact_contradict_each_other_by_their_distance() -> N
         after(first, second)
     assert {caught.value.first, caught.value.second} == {"far", "further"}
     assert caught.value.metres == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize("where", [{"offset": (1e7, 0.0, 0.0)}, {"place": (0.0, 2e3, 0.0)}])
+def test_a_pin_that_moves_too_far_to_compute_is_refused_by_name(where: dict[str, Vector]) -> None:
+    with pytest.raises(BeyondPrecision) as caught:
+        after(Pin("Landing", LANDING, **where))
+    assert caught.value.request == "Landing"
+    assert caught.value.metres > FURTHEST
+
+
+def test_a_whole_jump_may_be_elsewhere() -> None:
+    moved = after(Pin("a", LANDING, offset=(0.9 * FURTHEST, 0.0, 0.0)))
+    assert np.linalg.norm(moved - before(), axis=1).max() == pytest.approx(0.9 * FURTHEST)
 
 
 def test_two_pins_that_agree_are_one() -> None:

@@ -10,6 +10,9 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.solver.analysis.analyse import analyse
+from hangtime.solver.data.faults import BeyondPrecision
+from hangtime.solver.worker.pipeline import measure, unfitted
+from hangtime.solver.worker.possible import check_requested
 from hangtime.tests.blender.helpers.jump_scene import FIRST, LAST, drift, landing, pins
 
 pytestmark = pytest.mark.usefixtures("_enabled")
@@ -137,3 +140,15 @@ def test_a_scene_of_other_units_is_read_in_metres(analysed: bpy.types.Object) ->
     settings.stances["ground 2"].up = 0.1
     place = pins(analysed)["Left heel 2"].place
     np.testing.assert_allclose(place, 0.5 * np.array(settings.contacts["Left heel 2"].at))
+
+
+def test_a_landing_beyond_what_single_precision_tells_is_refused_by_name(
+    analysed: bpy.types.Object,
+) -> None:
+    """It was told to contradict itself by centimetres, which are rounding."""
+    analysed.hangtime.stances["ground 2"].forward = 1e7
+    recording = read_recorded(analysed, FIRST, LAST)
+    subject = measure(recording, problem_of(analysed.hangtime, recording))
+    with pytest.raises(BeyondPrecision) as caught:
+        check_requested(unfitted(subject), subject.problem)
+    assert caught.value.request in {row.name for row in landing(analysed.hangtime)}
