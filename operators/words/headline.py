@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from ...solver.data.faults import NoFit
 from ...solver.data.reports.certificate import CertificateItem, CertificateLine
-from ...solver.data.reports.constraints import ConstraintReport, FitNeeds
+from ...solver.data.reports.constraints import AcceptedReport, ConstraintReport, FitNeeds
 from ...solver.data.reports.keys import MissedContact
 from ...solver.data.reports.report import FitQuality, Report
 from ...solver.data.row_kinds import RowKind
@@ -59,7 +59,7 @@ def headline(report: Report) -> list[str]:
     told += given_up_lines(report)
     told += [line_told(line) for line in most_telling(report.failed)]
     missed = [missed_line(report.missed_contacts)] if report.missed_contacts else []
-    return [*missed, _solved(report, shown=not accepted), *(f"  {line}" for line in told)]
+    return [*missed, _solved(report), *(f"  {line}" for line in told)]
 
 
 def missed_line(missed: Sequence[MissedContact]) -> str:
@@ -75,23 +75,33 @@ def missed_line(missed: Sequence[MissedContact]) -> str:
     return f"The keys do not show what was solved: {points}{others}. {cure}, and press Update"
 
 
-def _solved(report: Report, *, shown: bool) -> str:
-    """The first line of what is solved. shown: whether the recording shows all that carries."""
+def _solved(report: Report) -> str:
+    """The first line of what is solved."""
     failed, count = report.failed, len(report.certificate)
     do = "does" if len(failed) == 1 else "do"
     lines = f"{len(failed)} of the certificate's {count} lines {do} not hold{_as_recorded(failed)}"
     if any(line.item in FITS for line in failed):
         return f"Solved, but the fit is far from the recording: {lines}."
-    if not shown:
+    if report.unseen_support or report.let_go:
         said = "Solved, but not with what the recording shows alone"
         return f"{said}, and {lines}." if failed else f"{said}."
     gone = len(report.given_up)
     places = "one place" if gone == 1 else f"{gone} places"
-    but = [f"limbs, the floor or joints' ranges gave way in {places}"] if gone else []
+    but = [_near_enough(report.needs.accepted)] if report.needs.accepted else []
+    but += [f"limbs, the floor or joints' ranges gave way in {places}"] if gone else []
     but += [lines] if failed else []
     if not but:
         return outcome(report.status)
     return f"Solved: everything asked for holds, but {', and '.join(but)}."
+
+
+def _near_enough(accepted: Sequence[AcceptedReport]) -> str:
+    """How many contacts miss their places, by how much at most, and what was to be accepted."""
+    off, limit = max(each.off_mm for each in accepted), max(each.limit_mm for each in accepted)
+    count = len(accepted)
+    said = "a contact is off its place" if count == 1 else f"{count} contacts are off their places"
+    by = f"by up to {length(off / 1000.0)} where {length(limit / 1000.0)} is good enough"
+    return f"{said} {by}"
 
 
 def _as_recorded(failed: Sequence[CertificateLine]) -> str:
@@ -131,7 +141,9 @@ def accepted_lines(needs: FitNeeds) -> list[str]:
         names = ", ".join(
             f"{each.name} ({length(each.off_mm / 1000.0)})" for each in needs.accepted
         )
-        lines.append(f"Contacts off their places by what counts as good enough: {names}")
+        limit = length(max(each.limit_mm for each in needs.accepted) / 1000.0)
+        counts = f"what counts as good enough ({limit} in each direction)"
+        lines.append(f"Contacts off their places by {counts}: {names}")
     return lines
 
 

@@ -60,7 +60,8 @@ def accepted(motion: Motion) -> Iterator[AcceptedReport]:
     for i, each in enumerate(motion.transcription.contacts):
         if each.contact.slack > 0.0:
             off = motion.drift(i, pinned_instants(each, SAMPLE_RATE))
-            yield AcceptedReport(each.contact.name, 1000.0 * float(off.max()))
+            millimetres = 1000.0 * float(off.max()), 1000.0 * each.contact.slack
+            yield AcceptedReport(each.contact.name, *millimetres)
 
 
 def worst_joint(fit: Fit, apart: FloatArray) -> tuple[str, float, float]:

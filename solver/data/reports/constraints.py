@@ -104,10 +104,12 @@ class LetGoReport:
 
 @dataclass(frozen=True)
 class AcceptedReport:
-    """A contact that no motion holds exactly, but near enough. off_mm: at its worst."""
+    """A contact that no motion holds exactly, but near enough. off_mm: at its worst. limit_mm: what
+    counts as good enough."""
 
     name: str
     off_mm: float
+    limit_mm: float
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,20 @@
 """What a fit needs beside the recording is told, of reports and of a fit alone."""
 
-from hangtime.operators.words.headline import accepted_lines
-from hangtime.solver.data.reports.constraints import FitNeeds, LetGoReport, UnseenSupportReport
+from dataclasses import replace
+
+from hangtime.operators.words.headline import accepted_lines, headline
+from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.reports.constraints import (
+    AcceptedReport,
+    FitNeeds,
+    LetGoReport,
+    UnseenSupportReport,
+)
+from hangtime.solver.data.reports.recording import Origin
+from hangtime.solver.data.reports.report import as_json
+from hangtime.solver.results.report import report
+from hangtime.solver.stages.implicit import adapt
+from hangtime.tests.helpers.fitted_hop import fitted_hop
 
 
 def test_all_frames_of_unseen_support_and_all_contacts_let_go_are_told() -> None:
@@ -16,3 +29,27 @@ def test_all_frames_of_unseen_support_and_all_contacts_let_go_are_told() -> None
     assert "1 to 41 (4.74), 58 to 115 (1.36)" in support
     assert "Right heel 2" in contacts
     assert accepted_lines(FitNeeds()) == []
+
+
+def test_what_is_good_enough_is_told_with_its_amounts_and_the_artist_s_limit() -> None:
+    """It needs nothing that the recording does not show, but it is not all that was asked for."""
+    near = AcceptedReport("Left heel 2", 0.4, 0.5), AcceptedReport("Right toe 2", 0.12, 0.5)
+    problem = MotionProblem()
+    made = report(adapt(fitted_hop(), problem), problem, Origin("hop"))
+    made = replace(made, accepted_contacts=near)
+    first, *lines = headline(made)
+    assert (
+        "everything asked for holds, but 2 contacts are off their places by up to 0.4 mm" in first
+    )
+    assert "where 0.5 mm is good enough" in first
+    (told,) = (line for line in lines if "good enough (0.5 mm in each direction)" in line)
+    assert told.endswith("Left heel 2 (0.4 mm), Right toe 2 (0.12 mm)")
+    recorded = as_json(made)["accepted_contacts"]
+    assert recorded == [vars(each) for each in near]
+
+
+def test_one_contact_is_told_as_one() -> None:
+    problem = MotionProblem()
+    made = report(adapt(fitted_hop(), problem), problem, Origin("hop"))
+    near = (AcceptedReport("Left heel 2", 0.4, 0.5),)
+    assert "but a contact is off its place" in headline(replace(made, accepted_contacts=near))[0]

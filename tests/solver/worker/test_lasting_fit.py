@@ -260,4 +260,5 @@ def test_a_contact_that_is_near_enough_is_accepted_and_told() -> None:
     needs = fit_needs(found)
     assert needs.accepted
     assert all(0.01 < each.off_mm < 310.0 for each in needs.accepted)
+    assert {each.limit_mm for each in needs.accepted} == {300.0}
     assert any("good enough" in line for line in accepted_lines(needs))
