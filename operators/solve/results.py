@@ -20,7 +20,7 @@ from .session import session
 
 NOTHING_ADAPTED = "Nothing has been adapted yet"
 BESIDE = "The armature {} performs the result beside the recording; there is nothing to switch"
-NOT_SHOWN = "{} is shown; show the result that is to go"
+NOT_SHOWN = "{} is shown; show the result that is to {}"
 NOT_COMPARED = "Nothing that {} was made from is there to compare it with"
 BUILT_ON = "{} was made from this result; discard that one first"
 REPORT = "{} report"
@@ -66,12 +66,16 @@ def performer_of(armature: bpy.types.Object) -> bpy.types.Object:
     return performer if performer is not None else armature
 
 
-def _shown(armature: bpy.types.Object, result: bpy.types.Action) -> str:
-    """What an armature shows in the place of a result."""
+def _not_shown(context: bpy.types.Context, fate: str) -> str | None:
+    """What the armature shows in the place of its result, of which nobody then sees that it is to
+    "be kept" or "go"; None where it is shown, or performed by another armature."""
+    armature, result = required_armature(context), required_result(context)
     shown = current_action(armature)
+    if performer_of(armature) != armature or shown == result:
+        return None
     if shown is None:
-        return "No action"
-    return "The recording" if shown == source_of(result) else shown.name
+        return NOT_SHOWN.format("No action", fate)
+    return NOT_SHOWN.format("The recording" if shown == source_of(result) else shown.name, fate)
 
 
 class _OfResult(PolledOperator):
@@ -163,7 +167,7 @@ class AcceptOperator(_OfSettledResult, bpy.types.Operator):
     bl_idname = OperatorId.ACCEPT
     bl_label = "Accept"
     bl_description = (
-        "Keep this result: it is shown, and it is what gets exported. Results that are not "
+        "Keep the result that is shown, for export. Results that are not "
         "accepted are dropped by Blender when the file is saved and opened again"
     )
     bl_options = {"REGISTER", "UNDO"}
@@ -173,7 +177,7 @@ class AcceptOperator(_OfSettledResult, bpy.types.Operator):
         why = super().obstacle(context)
         if why is None and action_settings(required_result(context)).accepted:
             return ACCEPTED
-        return why
+        return why or _not_shown(context, "be kept")
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         warning = action_settings(required_result(context)).warning
@@ -192,8 +196,6 @@ class AcceptOperator(_OfSettledResult, bpy.types.Operator):
         armature, result = required_armature(context), required_result(context)
         bake_shown(performer_of(armature), result)
         action_settings(result).accepted = result.use_fake_user = True
-        if performer_of(armature) == armature and current_action(armature) != result:
-            show(armature, result)
         self.report({"INFO"}, f"Accepted {result.name}")
         return {"FINISHED"}
 
@@ -209,12 +211,10 @@ class DiscardOperator(_OfSettledResult, bpy.types.Operator):
     @classmethod
     def obstacle(cls, context: bpy.types.Context) -> str | None:
         why = super().obstacle(context)
+        why = why or _not_shown(context, "go")
         if why is not None:
             return why
-        armature, result = required_armature(context), required_result(context)
-        if performer_of(armature) == armature and current_action(armature) != result:
-            return NOT_SHOWN.format(_shown(armature, result))
-        built = results_from(result)
+        built = results_from(required_result(context))
         return BUILT_ON.format(built[0].name) if built else None
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:

@@ -374,8 +374,11 @@ def test_what_is_shown_in_the_place_of_a_result_is_named(armature: bpy.types.Obj
     shown = {"No action": None, "The recording": recording, "Walk": bpy.data.actions.new("Walk")}
     for told, action in shown.items():
         armature.animation_data.action = action
-        with pytest.raises(RuntimeError, match=f"{told} is shown; show the result"):
+        with pytest.raises(RuntimeError, match=f"{told} is shown; show the result that is to go"):
             bpy.ops.hangtime.discard()
+        with pytest.raises(RuntimeError, match=f"{told} is shown; show the result that is to be"):
+            bpy.ops.hangtime.accept()
+    assert not any(take.action.hangtime.accepted for take in takes_of(armature))
     armature.animation_data.action = None
     with pytest.raises(RuntimeError, match="assign it the action that holds the recording"):
         bpy.ops.hangtime.show_recording()
