@@ -1,7 +1,9 @@
 """Moving contacts' places, one by one or a whole stance at once, and what a stance's move is.
 
 Lengths in Blender units, angles in rad, world.
-A place has one truth, `row.at`; empties and the stances' offsets are kept to it.
+A place has one truth, `row.at`; empties and the stances' offsets are kept to it. A stance's middle
+and move are those of its contacts that were found: one that the artist adds, or takes away again,
+changes neither.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ from ..rows.protocols import ContactRow, Settings, StanceRow
 
 _SAME = 1e-6  # Blender units
 _DIGITS = 6  # of a turn
+_RIGID = 1e-3  # m; contacts that are so far from their stance's move were moved with it
 
 
 def place(
@@ -65,7 +68,7 @@ def turn_stance(settings: Settings, stance: StanceRow, to: float) -> None:
     contacts = stance_contacts(settings, stance.name)
     if not contacts:
         return
-    middle = _middle([contact.at for contact in contacts])
+    middle = _middle([contact.at for contact in telling(contacts)])
     turn = Matrix.Rotation(to - stance.turned, 3, "Z")
     for contact in contacts:
         _put(contact, middle + turn @ (Vector(contact.at) - middle))
@@ -86,9 +89,35 @@ def stance_contacts(settings: Settings, phase: str) -> list[ContactRow]:
     return [row for row in settings.contacts if row.phase == phase]
 
 
+def telling(contacts: Sequence[ContactRow]) -> list[ContactRow]:
+    """Those of a stance that tell its middle and its move: what was found; of a stance that the
+    artist made all."""
+    return [row for row in contacts if not row.added] or list(contacts)
+
+
+def join(settings: Settings, row: ContactRow, metre: float) -> None:
+    """Takes a contact that is added where it was recorded to where its stance stands, and on what
+    the nearest one of that does: with the whole stance's move, else, where contacts were moved one
+    by one, with the nearest one's. metre: in Blender units."""
+    found = [each for each in stance_contacts(settings, row.phase) if not each.added]
+    stance = settings.stances.get(row.phase)
+    if stance is None or not found:
+        return
+    recorded = Vector(row.found_at)
+    nearest = min(found, key=lambda each: (Vector(each.found_at) - recorded).length)
+    old, new = (_middle([getattr(each, at) for each in found]) for at in ("found_at", "at"))
+    turn = Matrix.Rotation(stance.turned, 3, "Z")
+    apart = (new + turn @ (Vector(each.found_at) - old) - Vector(each.at) for each in found)
+    if all(each.length < _RIGID * metre for each in apart):
+        _put(row, new + turn @ (recorded - old))
+    else:
+        _put(row, recorded + Vector(nearest.at) - Vector(nearest.found_at))
+    row.on = nearest.on
+
+
 def stance_middle(settings: Settings, phase: str) -> Vector | None:
     """Where a stance stands, and about what it turns; None where no contact belongs to it."""
-    contacts = stance_contacts(settings, phase)
+    contacts = telling(stance_contacts(settings, phase))
     return _middle([contact.at for contact in contacts]) if contacts else None
 
 
@@ -166,7 +195,7 @@ def _move_empty(row: ContactRow) -> None:
 def _remember(settings: Settings, phase: str) -> None:
     """Keeps a stance's shift and turn to what its contacts' places say."""
     stance = settings.stances.get(phase)
-    contacts = stance_contacts(settings, phase)
+    contacts = telling(stance_contacts(settings, phase))
     if stance is None or not contacts:
         return
     found, now = [c.found_at for c in contacts], [c.at for c in contacts]

@@ -7,7 +7,7 @@ from ...bridge.accessors import present
 from ...bridge.armature.poses import metres_per_unit
 from ...bridge.armature.traces_store import kept
 from ...bridge.properties.settings import scene_settings, settings_of
-from ...bridge.properties.stances import active_contact, active_stance, put_back
+from ...bridge.properties.stances import active_contact, active_stance, join, put_back
 from ...bridge.rows.protocols import ContactRow
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
@@ -29,7 +29,10 @@ def _points(
 class AddContactOperator(PolledOperator, bpy.types.Operator):
     bl_idname = OperatorId.ADD_CONTACT
     bl_label = "Add Contact"
-    bl_description = "Let a heel, toe or hand touch from the current frame on; adjust its frames"
+    bl_description = (
+        "Let a heel, toe or hand touch from the current frame on, where it was recorded, or where "
+        "its stance was moved to; adjust its frames"
+    )
     bl_options = {"REGISTER", "UNDO"}
     bl_property = "point"
 
@@ -60,6 +63,7 @@ class AddContactOperator(PolledOperator, bpy.types.Operator):
         row.found_at = row.at = place
         near = [c for c in settings.contacts if c.start_frame <= last and c.end_frame >= first]
         row.phase = next((c.phase for c in near if c.phase), "")
+        join(settings, row, 1.0 / metres_per_unit(scene))
         settings.active_contact = len(settings.contacts) - 1
         return {"FINISHED"}
 

@@ -14,6 +14,9 @@ from hangtime.solver.data.faults import BeyondPrecision
 from hangtime.solver.worker.pipeline import measure, unfitted
 from hangtime.solver.worker.possible import check_requested
 from hangtime.tests.blender.helpers.jump_scene import FIRST, LAST, drift, landing, pins
+from hangtime.tests.blender.helpers.solids import make_box
+
+AT = "found_at", "at"
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 
@@ -82,6 +85,57 @@ def test_a_place_that_is_no_number_is_refused_and_put_back(
 
 
 @pytest.mark.slow
+def add_to_landing(settings: bpy.types.PropertyGroup, point: str) -> bpy.types.PropertyGroup:
+    bpy.context.scene.frame_set(round(landing(settings)[0].start_frame) + 2)
+    assert bpy.ops.hangtime.add_contact(point=point) == {"FINISHED"}
+    return settings.contacts[settings.active_contact]
+
+
+def test_a_contact_that_is_added_goes_where_its_stance_was_moved_and_turned(
+    analysed: bpy.types.Object,
+) -> None:
+    """The stance's move, which was an average with the new one's none, stays as it was set."""
+    settings, crate = analysed.hangtime, make_box("Crate")
+    stance = settings.stances["ground 2"]
+    stance.forward, stance.up, stance.turn = 0.3, 0.2, np.pi / 2
+    was = (*stance.shifted, stance.turned)
+    for row in landing(settings):
+        row.on = crate
+    added = add_to_landing(settings, "Left hand")
+    stance = settings.stances["ground 2"]
+    assert (*stance.shifted, stance.turned) == was
+    assert added.on == crate
+    found = next(row for row in landing(settings) if not row.added)
+    before, after = (np.subtract(getattr(added, at), getattr(found, at)) for at in AT)
+    np.testing.assert_allclose(after, (-before[1], before[0], before[2]), atol=1e-5)
+    found.place = np.add(found.place, (0.0, 0.0, 0.1))  # the whole stance's
+    assert stance.up == pytest.approx(0.3, abs=1e-5)
+    assert bpy.ops.hangtime.remove_contact() == {"FINISHED"}
+    stance = settings.stances["ground 2"]
+    stance.left += 0.1
+    np.testing.assert_allclose(stance.shifted, np.add(was[:3], (0.0, 0.1, 0.1)), atol=1e-5)
+
+
+def test_where_contacts_were_moved_one_by_one_the_nearest_s_move_is_an_added_one_s(
+    analysed: bpy.types.Object,
+) -> None:
+    settings = analysed.hangtime
+    settings.whole_stance = False
+    for row in landing(settings):
+        if row.point.startswith("Left"):
+            row.place = np.add(row.found_at, (0.0, 0.0, 0.2))
+    added = add_to_landing(settings, "Left heel")
+    np.testing.assert_allclose(np.subtract(added.at, added.found_at), (0, 0, 0.2), atol=1e-6)
+
+
+def test_a_contact_that_is_added_to_a_stance_that_stays_is_where_it_was_recorded(
+    analysed: bpy.types.Object,
+) -> None:
+    added = add_to_landing(analysed.hangtime, "Left hand")
+    np.testing.assert_allclose(added.at, added.found_at, atol=1e-6)
+    assert "Left hand added" not in pins(analysed)
+
+
 def test_an_empty_carries_its_stance(analysed: bpy.types.Object) -> None:
     settings = analysed.hangtime
     first, second = landing(settings)[:2]
