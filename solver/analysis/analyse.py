@@ -32,7 +32,7 @@ from ..data.scene import SupportBox
 from ..scene.belt import belt_speed
 from ..scene.fall_rate import fitting_rate
 from ..scene.support import boxes_beneath
-from .contact_detection import unseen_support
+from .contact_detection import falls_beside_unseen, unseen_support
 from .grounding import disjoint, foot_sized, grounded, parted
 from .performance import (
     Performance,
@@ -84,7 +84,14 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     standing = foot_sized(corrected, performance, problem.scene)
     schedule = grounded(standing, performance, problem.scene)
     known = performance.take
-    unseen = unseen_support(schedule.contacts, schedule.duration, known.times, known.com, skids)
+    unseen = unseen_support(
+        schedule.contacts,
+        schedule.duration,
+        known.times,
+        known.com,
+        skids,
+        falls_beside_unseen(touching),
+    )
     schedule = replace(schedule, unseen=unseen)
     told = tuple(_told(performance, schedule, skids))
     if told and problem.unseen is Unseen.REFUSE:

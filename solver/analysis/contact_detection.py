@@ -32,8 +32,12 @@ MIN_PIECE = 0.03  # s, of a contact that a cut leaves; a foot takes as long to l
 MAX_DELAY = 0.1  # s, by which noise delays a contact of who stands; a hop of 1 cm flies as long
 LEAST_FALL = 0.25  # m/s; a flight of 0.05 s ends, and begins, so fast; standing bodies are slower
 MIN_FALL_WINDOW = 0.05  # s; over which an acceleration can be estimated
+MIN_UNSEEN = 0.1  # s, of a fall beside unseen support, and of what that leaves at a gap's ends
 FREE_FALL_TOLERANCE = 6.0  # m/s²; short flights, and the ends of clips, are that uncertain
 FALL_RESIDUAL = 0.03  # m, rms; a centre of mass further from every parabola is carried
+# m/s² and m, rms: by which recorded flights of 0.1 s and more are off gravity and a parabola; a
+# dance whose floor drifts has falls that are 2.2 and 0.006 off, and are none
+CLEAR_FALL, CLEAR_RESIDUAL = 2.0, 0.003
 COM_NOISE = 0.001  # m, from frame to frame, of a recorded centre of mass
 STANDARD_ERRORS = 3.0  # of a fitted acceleration, before it speaks against a free fall
 
@@ -92,16 +96,37 @@ def unseen_support(
     times: FloatArray,
     com: FloatArray | None,
     known: Iterable[Interval] = (),
+    falls: Sequence[Interval] = (),
 ) -> tuple[Interval, ...]:
     """Intervals of [0, duration], s, without a contact in which the body does not fall, or within
-    those that are known to be such."""
+    those that are known to be such; but for falls that are known in them."""
     carried, told = ((c.start, c.end) for c in contacts), tuple(known)
     return tuple(
-        gap
+        piece
         for gap in gaps(carried, duration)
         if any(each.start <= gap.start and gap.end <= each.end for each in told)
         or not _may_fall(times, com, gap)
+        for piece in without_falls(gap, falls)
     )
+
+
+def without_falls(gap: Interval, falls: Sequence[Interval]) -> tuple[Interval, ...]:
+    """What falls leave of a gap between contacts, s. One that ends about where the gap does ends
+    with it: contacts are corrected after it was found. Shorter ones than a rest tell nothing."""
+    cut = []
+    for fall in falls:
+        start = gap.start if fall.start - gap.start < MIN_UNSEEN else fall.start
+        end = gap.end if gap.end - fall.end < MIN_UNSEEN else fall.end
+        if min(end, gap.end) - max(start, gap.start) >= MIN_UNSEEN:
+            cut.append((start - gap.start, end - gap.start))
+    left = gaps(cut, gap.end - gap.start)
+    return tuple(Interval(gap.start + piece.start, gap.start + piece.end) for piece in left)
+
+
+def falls_beside_unseen(schedule: ContactSchedule) -> tuple[Interval, ...]:
+    """The flights that begin or end where something unseen carries the body."""
+    ends = {t for each in schedule.unseen for t in (each.start, each.end)}
+    return tuple(f for f in schedule.flights if f.start in ends or f.end in ends)
 
 
 def _touches(
@@ -364,14 +389,29 @@ def _may_fall(times: FloatArray, com: FloatArray | None, gap: Interval) -> bool:
     return off is None or off < max(FREE_FALL_TOLERANCE, STANDARD_ERRORS * _uncertainty(times, gap))
 
 
-def _off_gravity(times: FloatArray, com: FloatArray | None, gap: Interval) -> float | None:
+def clear_falls(
+    times: FloatArray, com: FloatArray, flights: Iterable[Interval]
+) -> tuple[Interval, ...]:
+    """Those of flights that nothing but gravity explains, whatever is said to carry there."""
+    found = []
+    for flight in flights:
+        off = _off_gravity(times, com, flight, CLEAR_RESIDUAL)
+        if off is not None and off < CLEAR_FALL:
+            found.append(flight)
+    return tuple(found)
+
+
+def _off_gravity(
+    times: FloatArray, com: FloatArray | None, gap: Interval, rough: float = FALL_RESIDUAL
+) -> float | None:
     """By how much the centre of mass's acceleration differs from gravity, m/s², by the parabola
-    that fits best; infinite where none fits, None where it cannot be told."""
+    that fits best; infinite where none fits, None where it cannot be told. rough: m, rms, by which
+    it may miss it."""
     t, within = _around(times, gap)
     if com is None or len(t) < 4:
         return None
     fitted = np.polyfit(t, com[within, 2], 2)
-    if np.std(com[within, 2] - np.polyval(fitted, t)) > FALL_RESIDUAL:
+    if np.std(com[within, 2] - np.polyval(fitted, t)) > rough:
         return np.inf
     return float(abs(2.0 * fitted[0] + STANDARD_GRAVITY))
 

@@ -1,7 +1,7 @@
 """Joint angles and centre of mass of a recording, and its candidate contact points."""
 
 from collections.abc import Mapping, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -14,8 +14,8 @@ from ..data.contacts import ContactPoint, ContactSchedule, PointKind, snap
 from ..data.recording import Recording, Skin
 from ..data.scene import SceneObject
 from ..numerics.interpolation import interpolate
-from ..scene.support import StandingGround
-from .contact_detection import detect_contacts
+from ..scene.support import StandingGround, boxes_beneath, level, on_boxes
+from .contact_detection import clear_falls, detect_contacts, without_falls
 from .skin import skin_of_bodies
 from .soles import FootTracks, floor_height, foot_points
 
@@ -84,7 +84,8 @@ def find_contacts(performance: Performance, scene: Sequence[SceneObject] = ()) -
 
     Found in the whole take, and told as far as they are within the recording. Ground of the scene
     counts where the floor alone leaves support unseen: elsewhere the recording knows nothing of
-    what is put into its way. Places on ground that moves are as seen from it.
+    what is put into its way. Where feet rest in mid-air, and then the body falls, only the rest is
+    unseen support. Places on ground that moves are as seen from it.
     """
     take = performance.take
     points, floor_m = contact_points(take)
@@ -93,8 +94,17 @@ def find_contacts(performance: Performance, scene: Sequence[SceneObject] = ()) -
         detect_contacts, take.times, points, floor_m=floor_m, com=take.com, duration_s=duration
     )
     schedule, ground = detect(), StandingGround.of(floor_m, scene, performance.recording)
+    heights = level(floor_m)
     if schedule.unseen and not ground.bare:
-        schedule = ground.named(detect(ground=ground.heights, carriers=ground.carriers))
+        heights = ground.heights
+        detect = partial(detect, carriers=ground.carriers)
+        schedule = ground.named(detect(ground=heights))
+    boxes = [b for gap in schedule.unseen for b in boxes_beneath(take.times, points, gap, floor_m)]
+    if boxes:  # they would tell when the feet leave them, and so where the body flies
+        flights = detect(ground=on_boxes(boxes, heights)).flights
+        falls = clear_falls(take.times, take.com, flights)
+        unseen = (piece for gap in schedule.unseen for piece in without_falls(gap, falls))
+        schedule = replace(schedule, unseen=tuple(unseen))
     return snap(schedule, snap_tolerance(performance))
 
 

@@ -91,8 +91,8 @@ def _landed(
 
 
 def phase_of(pin: Pin, schedule: ContactSchedule) -> Phase:
-    """The ground phase that a pin names. Raises UnknownPhase."""
-    ground = [p for p in schedule.phases if p.kind is PhaseKind.GROUND]
+    """The ground phase that a pin names, in which something touches. Raises UnknownPhase."""
+    ground = [p for p in schedule.phases if p.kind is PhaseKind.GROUND and schedule.of_phase(p)]
     for phase in ground:
         if phase.name == pin.phase:
             return phase

@@ -140,6 +140,23 @@ def boxes_beneath(
     return tuple(found)
 
 
+def on_boxes(boxes: Sequence[SupportBox], ground: Heights) -> Heights:
+    """The ground with boxes upon it."""
+
+    def heights(times: FloatArray, points: FloatArray) -> FloatArray:
+        found = ground(times, points)
+        for box in boxes:
+            c, s = np.cos(box.turn), np.sin(box.turn)
+            away = (points[:, :2] - box.place[:2]) @ np.array([[c, -s], [s, c]])
+            top = box.place[2] + box.size[2]
+            beneath = (np.abs(away) <= 0.5 * np.array(box.size[:2])).all(axis=1)
+            on = beneath & (top > found) & (top < points[:, 2] + REACH)
+            found = np.where(on, top, found)
+        return found
+
+    return heights
+
+
 def _rests(times: FloatArray, points: Mapping[str, ContactPoint], during: BoolArray) -> _Rests:
     """Where points of the feet rest: of those that do at an instant, the lowest carry."""
     feet = {name: point for name, point in points.items() if point.kind is not PointKind.HAND}

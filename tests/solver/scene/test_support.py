@@ -11,7 +11,7 @@ from hangtime.solver.analysis.analyse import Analysis, analyse
 from hangtime.solver.analysis.grounding import PLACE_BAND
 from hangtime.solver.data.contacts import PhaseKind
 from hangtime.solver.data.faults import UnseenSupport
-from hangtime.solver.data.problem import MotionProblem, Unseen
+from hangtime.solver.data.problem import ContactEdit, MotionProblem, Unseen
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.scene import SceneObject, SceneRole, SupportBox
 from hangtime.solver.worker.pipeline import measure
@@ -84,6 +84,29 @@ def sinking(since: float) -> SceneObject:
     places = box.positions[0] + down[:, None] * np.array([0.0, 0.0, 1.0])
     turns = np.tile(box.rotations[0], (len(down), 1, 1))
     return replace(box, frames=recording.frames, positions=places, rotations=turns)
+
+
+def test_the_flight_off_a_box_that_is_not_there_is_a_flight() -> None:
+    """The same as with the box; what is unseen ends where the feet leave."""
+    without = measure(drop(), MotionProblem()).analysis.schedule
+    explained = measure(drop(), MotionProblem(scene=boxes())).analysis.schedule
+    assert [phase.name for phase in without.phases] == ["ground 1", "flight 1", "ground 2"]
+    for one, other in zip(without.flights, explained.flights, strict=True):
+        assert (one.start, one.end) == pytest.approx((other.start, other.end), abs=0.02)
+    (unseen,) = without.unseen
+    assert (unseen.start, unseen.end) == (0.0, without.flights[0].start)
+
+
+def test_it_stays_one_where_the_landing_is_corrected() -> None:
+    found = measure(drop(), MotionProblem()).analysis.schedule
+    landing = min(found.contacts, key=lambda contact: contact.start)
+    recording = drop()
+    later = float(recording.frames[0]) + (landing.start + 0.03) * recording.rate
+    edits = tuple(ContactEdit(c.name, start_frame=later) for c in found.contacts if c.start < later)
+    corrected = measure(recording, MotionProblem(contacts=edits)).analysis.schedule
+    (flight,) = corrected.flights
+    assert flight.start == pytest.approx(found.flights[0].start, abs=1e-6)
+    assert flight.end == min(contact.start for contact in corrected.contacts)
 
 
 def test_a_lift_that_waits_explains_what_carried_the_body() -> None:

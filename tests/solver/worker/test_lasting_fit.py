@@ -10,8 +10,9 @@ from hangtime.devtools.checks.mujoco_check import check_motion, check_npz
 from hangtime.operators.words.headline import accepted_lines, headline
 from hangtime.operators.words.messages import sentence
 from hangtime.operators.words.report_text import as_text
+from hangtime.solver.analysis.pinned_places import pinned_places
 from hangtime.solver.data.contacts import PhaseKind
-from hangtime.solver.data.faults import UnseenSupport
+from hangtime.solver.data.faults import UnknownPhase, UnseenSupport
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.reports.recording import Origin
@@ -65,7 +66,7 @@ def fitted() -> Fit:
 
 @cache
 def adapted(up: float = 0.0) -> AdaptationResult:
-    pins = (Pin("Landing", "ground 1", offset=(0.0, 0.0, up)),) if up else ()
+    pins = (Pin("Landing", "ground 2", offset=(0.0, 0.0, up)),) if up else ()
     return adapt_fit(subject().asked(MotionProblem(pins=pins)), fitted(), StageClock())
 
 
@@ -143,6 +144,14 @@ def test_what_is_carried_so_is_adapted() -> None:
     made = adapted(0.1)
     assert made.fault is None
     assert made.adaptation.motion.places[-1, 2] == pytest.approx(0.1, abs=0.01)
+
+
+def test_a_stance_on_what_is_not_there_has_no_contact_to_move() -> None:
+    """It was moved to no number."""
+    pins = (Pin("Take-off", "ground 1", offset=(0.0, 0.0, 0.1)),)
+    with pytest.raises(UnknownPhase) as found:
+        pinned_places(MotionProblem(pins=pins), subject().analysis.performance, subject().schedule)
+    assert found.value.known == ("ground 2",)
 
 
 @pytest.mark.slow
