@@ -7,6 +7,7 @@ import numpy as np
 
 from ...solver.arrays import FloatArray, IntArray
 from ...solver.data.scene import SceneObject, SceneRole, SupportBox
+from ...solver.doctor.stance.footing import FLOOR_OFF, TOP_OFF
 from ...solver.numerics.rotations import axis_rotation
 from ..recipe_syntax.toml_text import degrees, entries
 from ..shapes.boxes import Known, known_solid
@@ -36,19 +37,25 @@ def mesh_files(scene: Sequence[SceneObject]) -> dict[str, str]:
 
 def support_texts(boxes: Sequence[SupportBox]) -> list[str]:
     """The tables of boxes that would carry what nothing in sight does."""
-    return [
-        f"[[{HEADER}]]\n"
-        + entries(
-            {
-                "name": support_name(i),
-                "role": SceneRole.GROUND.value,
-                "box": _rounded(box.size),
-                "place": _rounded(box.place),
-                "turn": round(float(np.degrees(box.turn)), FINE),
-            }
-        )
-        for i, box in enumerate(boxes)
-    ]
+    return [_support_text(support_name(i), box) for i, box in enumerate(boxes)]
+
+
+def _support_text(name: str, box: SupportBox) -> str:
+    """With a comment of where it goes if the recording is put on the floor, as is advised."""
+    values = {
+        "name": name,
+        "role": SceneRole.GROUND.value,
+        "box": _rounded(box.size),
+        "place": _rounded(box.place),
+        "turn": round(float(np.degrees(box.turn)), FINE),
+    }
+    text = f"[[{HEADER}]]\n{entries(values)}"
+    x, y, floor = _rounded(box.place)
+    if abs(floor) <= FLOOR_OFF or abs(box.top) <= TOP_OFF:
+        return text
+    way = "lowered" if floor > 0.0 else "raised"
+    moved = f"{way} by {abs(floor):g} m, by “floor” under [recording]"
+    return f"{text}# with the recording {moved}: place = [{x:g}, {y:g}, 0]\n"
 
 
 def support_name(i: int) -> str:

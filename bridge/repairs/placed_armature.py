@@ -14,6 +14,7 @@ from ...solver.doctor.upright import turn_upright
 from ..accessors import current_scene, present
 from ..armature.poses import frames_per_second, metres_per_unit, set_frame_rate
 from ..properties.settings import settings_of
+from ..scene.support_box import carry_along
 from .missing_keys import put_in
 from .stored import applied, text_of
 
@@ -35,9 +36,13 @@ def repair(armature: bpy.types.Object, repairs: Repairs) -> None:
 
 
 def _place(armature: bpy.types.Object, repairs: Repairs) -> None:
-    """Turns the figure upright, scales it about the world's origin and lowers it to the floor."""
+    """Turns the figure upright, scales it about the world's origin and lowers it to the floor; and
+    with it boxes that were added to carry it."""
     top = _top(armature)
     above = top.parent if _is_ours(top.parent) else None
+    before = Matrix() if above is None else above.matrix_basis.copy()
+    placement = _placement(repairs)
+    carry_along(armature, placement @ before.inverted())
     if not repairs.places:
         if above is not None:
             top.parent = _followed(above)
@@ -45,9 +50,14 @@ def _place(armature: bpy.types.Object, repairs: Repairs) -> None:
         return
     if above is None:
         above = _put_above(top)
+    above.matrix_basis = placement
+
+
+def _placement(repairs: Repairs) -> Matrix:
+    """Of the empty."""
     turn = Matrix(turn_upright(repairs.up).tolist()).to_4x4()
     lowered = Matrix.Translation((0.0, 0.0, -repairs.floor / metres_per_unit(current_scene())))
-    above.matrix_basis = lowered @ Matrix.Scale(repairs.scale, 4) @ turn
+    return lowered @ Matrix.Scale(repairs.scale, 4) @ turn
 
 
 def _top(armature: bpy.types.Object) -> bpy.types.Object:

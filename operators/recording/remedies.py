@@ -24,6 +24,7 @@ class MendingOperator(ReadyOperator):
             return self.refuse(said(fault))
         if "FINISHED" in done:
             session().failure = None
+            session().support = None  # what would carry is elsewhere; the next analysis tells where
             redraw("VIEW_3D", "DOPESHEET_EDITOR")
         return done
 

@@ -30,6 +30,11 @@ class SupportBox:
     place: Vector
     turn: float
 
+    @property
+    def top(self) -> float:
+        """Height, m, world, at which it carries."""
+        return self.place[2] + self.size[2]
+
 
 @dataclass(frozen=True)
 class SteadyMotion:

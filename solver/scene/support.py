@@ -148,10 +148,9 @@ def on_boxes(boxes: Sequence[SupportBox], ground: Heights) -> Heights:
         for box in boxes:
             c, s = np.cos(box.turn), np.sin(box.turn)
             away = (points[:, :2] - box.place[:2]) @ np.array([[c, -s], [s, c]])
-            top = box.place[2] + box.size[2]
             beneath = (np.abs(away) <= 0.5 * np.array(box.size[:2])).all(axis=1)
-            on = beneath & (top > found) & (top < points[:, 2] + REACH)
-            found = np.where(on, top, found)
+            on = beneath & (box.top > found) & (box.top < points[:, 2] + REACH)
+            found = np.where(on, box.top, found)
         return found
 
     return heights

@@ -13,6 +13,7 @@ from ...analysis.performance import Performance, contact_points, find_contacts
 from ...arrays import FloatArray
 from ...data.contacts import ContactSchedule, Interval, PointKind
 from ...data.recording import Recording
+from ...scene.support import boxes_beneath
 from ..falls import Spans
 from ..figure import Figure
 from ..finding import Finding, FindingKind
@@ -21,6 +22,7 @@ from ..repairs import Repairs
 from .flat_feet import FLAT_SPEED, FlatSamples
 
 FLOOR_OFF = 0.03  # m, from the world's 0
+TOP_OFF = 0.05  # m, likewise, of a box: how thick soles are is told by a floor at 0 alone
 LOW = 0.03  # m above the floor: a foot that stands
 STANDING_SPEED_UP = 0.15  # m/s, up or down, of a foot that stands
 ROUNDS = 8  # of narrowing the speeds to the half that agree best
@@ -72,11 +74,15 @@ def find_footing(
 
 def _floor(performance: Performance, schedule: ContactSchedule) -> Finding | None:
     """Feet that stand on another height than the world's 0. Where nothing stands there is no floor:
-    that of contacts is then the lowest that feet reach in the air."""
+    that of contacts is then the lowest that feet reach in the air. Who also stands at 0, unseen, or
+    on an object of the scene, jumps down from there: moved, the recording would leave that."""
     if not schedule.contacts and not schedule.unseen:
         return None
-    _, floor = contact_points(performance)
-    if abs(floor) <= FLOOR_OFF:
+    points, floor = contact_points(performance)
+    if abs(floor) <= FLOOR_OFF or any(contact.on is not None for contact in schedule.contacts):
+        return None
+    boxes = (b for u in schedule.unseen for b in boxes_beneath(performance.times, points, u, floor))
+    if any(abs(box.top) <= TOP_OFF for box in boxes):
         return None
     return Finding(FindingKind.FLOOR, floor, "m", remedy=Repairs(floor=floor))
 

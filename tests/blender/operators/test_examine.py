@@ -30,8 +30,10 @@ from hangtime.bridge.repairs.stored import (
 )
 from hangtime.bridge.rows.phases import unseen_frames
 from hangtime.bridge.takes.takes import derive
+from hangtime.operators.solve.session import session
 from hangtime.operators.timeline.timeline_bars import rows_of
 from hangtime.solver.data.problem import Mend
+from hangtime.solver.data.scene import SupportBox
 from hangtime.solver.doctor.examination.repair import as_asked, unplaced
 from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis
 from hangtime.solver.doctor.stance.feet import FootFaultKind
@@ -116,6 +118,14 @@ def test_noise_is_told_by_analyze_until_it_is_smoothed(
     bpy.ops.hangtime.repair_all()
     bpy.ops.hangtime.analyze()
     assert not re.search(trembles, capfd.readouterr().out)
+
+
+def test_a_box_that_was_offered_before_a_repair_is_no_longer(examined) -> None:
+    """It would stand where the recording was."""
+    session().support = (examined.session_uid, (SupportBox((1, 1, 1), (0, 0, 0), 0.0),))
+    assert bpy.ops.hangtime.add_support_box.poll()
+    bpy.ops.hangtime.repair_all()
+    assert not bpy.ops.hangtime.add_support_box.poll()
 
 
 def test_a_remedy_is_left_out_again(examined) -> None:

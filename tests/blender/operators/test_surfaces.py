@@ -14,6 +14,7 @@ from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.traces_store import kept
 from hangtime.bridge.constraints.motion_problem import analysis_key, problem_of
 from hangtime.bridge.constraints.surface_status import write_surface_status
+from hangtime.bridge.repairs.placed_armature import repair
 from hangtime.operators.drag.drag_state import Landing
 from hangtime.operators.drag.rays import Ray
 from hangtime.operators.drag.snapping import Snapping
@@ -24,6 +25,7 @@ from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.reports.constraints import ConstraintReport
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.scene import SceneRole, SupportBox
+from hangtime.solver.doctor.repairs import Repairs
 from hangtime.solver.scene.checks import check_scene
 from hangtime.solver.scene.triangle_mesh import placed_mesh
 from hangtime.tests.blender.helpers.actions import curves_of
@@ -313,6 +315,25 @@ def test_a_box_is_added_under_the_feet_in_the_scenes_units(rig: bpy.types.Object
     assert mesh.closed
     assert mesh.volume > 0.0
     assert not bpy.ops.hangtime.add_support_box.poll()  # what was unseen is there now
+
+
+def test_a_box_that_was_added_goes_with_the_recording_onto_the_floor(
+    rig: bpy.types.Object,
+) -> None:
+    """And back; what the artist brought into the scene stays."""
+    session().support = (rig.session_uid, (SupportBox((0.4, 0.3, 0.25), (1.0, 2.0, 0.5), 0.0),))
+    assert bpy.ops.hangtime.add_support_box() == {"FINISHED"}
+    box, own = rig.hangtime.surfaces[0].object, make_box("Stage")
+    add_row(rig, own)
+    stage = tuple(own.matrix_world.translation)
+    for repairs, place in (
+        (Repairs(floor=0.5), (1.0, 2.0, 0.0)),
+        (Repairs(floor=0.25, scale=0.5), (0.5, 1.0, 0.0)),
+        (Repairs(), (1.0, 2.0, 0.5)),
+    ):
+        repair(rig, repairs)
+        assert tuple(box.matrix_world.translation) == pytest.approx(place, abs=1e-6)
+        assert tuple(own.matrix_world.translation) == stage
 
 
 def test_a_box_is_offered_for_its_own_armature_alone(rig: bpy.types.Object) -> None:

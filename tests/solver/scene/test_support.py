@@ -14,6 +14,9 @@ from hangtime.solver.data.faults import UnseenSupport
 from hangtime.solver.data.problem import ContactEdit, MotionProblem, Unseen
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.scene import SceneObject, SceneRole, SupportBox
+from hangtime.solver.doctor.examination.diagnose import diagnose
+from hangtime.solver.doctor.examination.repair import repaired
+from hangtime.solver.doctor.finding import Finding, FindingKind
 from hangtime.solver.worker.pipeline import measure
 from hangtime.solver.worker.protocol import Analysed, Request, RequestKind
 from hangtime.solver.worker.service import Service
@@ -107,6 +110,56 @@ def test_it_stays_one_where_the_landing_is_corrected() -> None:
     (flight,) = corrected.flights
     assert flight.start == pytest.approx(found.flights[0].start, abs=1e-6)
     assert flight.end == min(contact.start for contact in corrected.contacts)
+
+
+def lower(metres: float) -> Recording:
+    """The jump down, its landing so far below 0."""
+    return replace(drop(), heads=drop().heads - [0.0, 0.0, metres])
+
+
+def damage(recording: Recording, *scene: SceneObject) -> list[Finding]:
+    return [each for each in diagnose(recording, scene=scene).findings if not each.kind.note]
+
+
+def offered_for(recording: Recording) -> str:
+    """The text of the box that is offered."""
+    (found,) = analyse(recording, MotionProblem()).unseen
+    assert isinstance(found, UnseenSupport)
+    (text,) = support_texts(found.boxes)
+    return text
+
+
+def test_who_stands_at_0_before_he_jumps_down_stands_on_the_floor() -> None:
+    """It was to be lowered to where it lands, and the box stayed below."""
+    recording = lower(DROP)
+    assert damage(recording) == []
+    text = offered_for(recording)
+    assert "with the recording" not in text
+    scene = parse_recipe(text).problem.scene
+    assert analyse(recording, MotionProblem(scene=scene)).unseen == ()
+    assert damage(recording, *scene) == []
+
+
+def test_the_floor_and_the_box_are_right_alone_and_together() -> None:
+    recording = lower(1.0)
+    (floor,) = damage(recording)
+    assert floor.kind is FindingKind.FLOOR
+    assert floor.remedy is not None
+    text = offered_for(recording)
+    scene = parse_recipe(text).problem.scene
+    assert analyse(recording, MotionProblem(scene=scene)).unseen == ()
+    assert damage(recording, *scene) == []  # it is where the scene has it
+    lowered = repaired(recording, floor.remedy)
+    assert damage(lowered) == []
+    lines = text.splitlines()
+    (place,) = (line for line in lines if line.startswith("place"))
+    (told,) = (line for line in lines if line.startswith("# with the recording raised by"))
+    both = parse_recipe(text.replace(place, told[told.index("place =") :])).problem.scene
+    assert analyse(lowered, MotionProblem(scene=both)).unseen == ()
+    assert damage(lowered, *both) == []
+    np.testing.assert_allclose(
+        parse_recipe(offered_for(lowered)).problem.scene[0].positions, both[0].positions, atol=2e-3
+    )
 
 
 def test_a_lift_that_waits_explains_what_carried_the_body() -> None:
