@@ -5,7 +5,7 @@ up = "Y"                        # the axis, as it was read, that is to become Z;
 missing = { 57 = 4, 103 = 1 }   # after frame 57 four frames are missing: they are put in
 trim = 1                        # frames left out at the beginning
 trim_end = 60                   # frames left out at the end
-repair = ["exchanged legs", "exchanged arms", "flips", "spikes",
+repair = ["full turns", "exchanged legs", "exchanged arms", "flips", "spikes",
           "held frames", "bone lengths", "noise", "floating"]
 time_scale = 0.8                # durations times this: played 1.25 times too slowly
 scale = 0.625                   # lengths times this, which makes a person of 0.3 to 3 m

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...solver.arrays import IntArray
+from ...solver.arrays import FloatArray, IntArray
 from ...solver.body.anatomy import Part
 from ...solver.data.problem import Mend
 from ...solver.data.recording import Recording
@@ -20,7 +20,7 @@ from ...solver.doctor.limbs import partners
 from ...solver.doctor.local_poses import LocalPoses
 from ...solver.doctor.repairs import Repairs, UpAxis
 from ...solver.numerics.interpolation import interpolate
-from ...solver.numerics.rotations import rotation_matrix
+from ...solver.numerics.rotations import axis_rotation, rotation_matrix
 
 SEED = 7
 VIDEO_RATE, FAST_RATE = 30.0, 120.0  # Hz, of one camera and of several
@@ -191,6 +191,33 @@ def flipped(frames: int) -> Damage:
         return Damaged(local.posed(recording), recording)
 
     return Damage(f"thigh flipped, {frames} frames", FindingKind.FLIP, do)
+
+
+def wrapped(part: Part, frames: int, channel: int = 0, rate: float | None = None) -> Damage:
+    """An Euler channel (0 to 2: Z, X, Y) that leaps from 180° to -180°, and was interpolated over
+    some frames. rate: Hz, at which the recording is sampled first; None: its own."""
+
+    def do(recording: Recording, rng: np.random.Generator) -> Damaged:
+        original = recording if rate is None else at_rate(recording, rate)
+        local, bone, count = LocalPoses.of(original), _bone(original, part), len(original.frames)
+        ramp = np.clip(np.arange(count) - rng.integers(8, count - frames - 8), 0, frames + 1)
+        angles = _euler(local.rotations[:, bone])
+        angles[:, channel] -= 2.0 * np.pi * ramp / (frames + 1)
+        z, x, y = (axis_rotation(a, angles[:, i]) for i, a in enumerate((2, 0, 1)))
+        local.rotations[:, bone] = z @ x @ y
+        return Damaged(local.posed(original), original)
+
+    at = "" if rate is None else f", {rate:g} Hz"
+    name = f"{part.value} turned around, {frames} frames{at}"
+    return Damage(name, FindingKind.FULL_TURN, do)
+
+
+def _euler(rotations: FloatArray) -> FloatArray:
+    """(T, 3) rad, of rotations (T, 3, 3) about Z, X and Y; not of those at gimbal lock."""
+    x = np.arcsin(np.clip(rotations[:, 2, 1], -1.0, 1.0))
+    z = np.arctan2(-rotations[:, 0, 1], rotations[:, 1, 1])
+    y = np.arctan2(-rotations[:, 2, 0], rotations[:, 2, 2])
+    return np.stack([z, x, y], axis=1)
 
 
 def held(count: int) -> Damage:
@@ -421,6 +448,7 @@ DAMAGES = (
     exchanged(30, Mend.LEGS, angles=True),
     exchanged(30, Mend.LEGS, Mend.ARMS),
     *map(flipped, (2, 12)),
+    *(wrapped(part, n) for part in (Part.PELVIS, Part.THIGH) for n in (2, 6)),
     *map(held, (1, 6)),
     *map(dropped, (1, 4)),
     *map(gap, (3, 6)),

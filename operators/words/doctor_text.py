@@ -23,6 +23,8 @@ EXCHANGED = (
 SENTENCES = {
     FindingKind.UP_AXIS: "The figure lies: another axis than Z points from its feet to its head.",
     FindingKind.BIND_POSE: "The rest pose is held {where}, with a jump between it and the motion.",
+    FindingKind.FULL_TURN: "{part} turns once around {where} and ends as it began: an angle that "
+    "leaps from 180° to -180° was interpolated, as exporters do.",
     FindingKind.EXCHANGED_LEGS: f"The left and the right leg {EXCHANGED}",
     FindingKind.EXCHANGED_ARMS: f"The left and the right arm {EXCHANGED}",
     FindingKind.FLIP: "{part} is turned by half a turn {where}.",
@@ -76,6 +78,7 @@ ADVICE = {
 REMEDIES = {
     FindingKind.UP_AXIS: "Turn Upright",
     FindingKind.BIND_POSE: "Leave Out",
+    FindingKind.FULL_TURN: "Turn On",
     FindingKind.EXCHANGED_LEGS: "Exchange Back",
     FindingKind.EXCHANGED_ARMS: "Exchange Back",
     FindingKind.FLIP: "Turn Back",

@@ -26,6 +26,7 @@ class Unseen(Enum):
 class Mend(Enum):
     """A repair of poses, or of how the body stands. Its value is the word in recipes."""
 
+    FULL_TURNS = "full turns"
     LEGS = "exchanged legs"
     ARMS = "exchanged arms"
     FLIPS = "flips"

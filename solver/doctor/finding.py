@@ -13,6 +13,7 @@ class FindingKind(Enum):
 
     UP_AXIS = "up axis"
     BIND_POSE = "bind pose"
+    FULL_TURN = "full turn"
     EXCHANGED_LEGS = "exchanged legs"
     EXCHANGED_ARMS = "exchanged arms"
     FLIP = "flip"

@@ -23,6 +23,7 @@ from ..figure import figure_of
 from ..finding import Finding, FindingKind
 from ..frames.exchanges import KINDS, LIMBS, find_exchange
 from ..frames.flips import find_flips
+from ..frames.full_turns import find_full_turns
 from ..frames.jumps import find_jumps
 from ..frames.missing import find_dropped, find_held
 from ..frames.spikes import find_spikes
@@ -101,6 +102,7 @@ def diagnose(
     size = person_factor(stature(recording, chosen))
     recording = scaled_recording(recording, size)  # limits in metres are those of persons
     told(0.05)
+    recording = cured(recording, find_full_turns(recording, figure))
     for limbs in LIMBS:
         recording = cured(recording, find_exchange(recording, figure, limbs))
     told(0.1)

@@ -17,6 +17,7 @@ from ...skeleton.mirror import mirrored
 from ..figure import Figure, figure_of
 from ..frames.exchanges import exchanged_back
 from ..frames.flips import unflipped
+from ..frames.full_turns import without_full_turns
 from ..frames.missing import held_frames
 from ..frames.spikes import unsound_spikes
 from ..lengths import kept_lengths
@@ -193,6 +194,8 @@ def mended(
 
 def _with(mend: Mend, recording: Recording, figure: Figure) -> Recording:
     match mend:
+        case Mend.FULL_TURNS:
+            return without_full_turns(recording, figure)
         case Mend.LEGS | Mend.ARMS:
             return exchanged_back(recording, figure, mend)
         case Mend.FLIPS:
