@@ -2,11 +2,12 @@
 
 [recording]
 up = "Y"                        # the axis, as it was read, that is to become Z; "-X" ...
-missing = { 57 = 4, 103 = 1 }   # after frame 57 four frames are missing: they are put in
+missing = { 57 = 4, 103 = -36 } # after frame 57 four frames are missing: they are put in; after
+                                # frame 103 thirty-six are too many: they are taken out
 trim = 1                        # frames left out at the beginning
 trim_end = 60                   # frames left out at the end
-repair = ["full turns", "exchanged legs", "exchanged arms", "flips", "spikes",
-          "held frames", "bone lengths", "noise", "floating"]
+repair = ["full turns", "held frames", "exchanged legs", "exchanged arms", "flips",
+          "spikes", "bone lengths", "noise", "floating"]
 time_scale = 0.8                # durations times this: played 1.25 times too slowly
 scale = 0.625                   # lengths times this, which makes a person of 0.3 to 3 m
 drift = [0.1, 0.0]              # m/s along the floor, x and y, that is taken out; 15 at most
@@ -27,8 +28,8 @@ from ..recipe_syntax.table import ABOVE_ZERO, NumberRange, Table
 FASTEST_DRIFT = 15.0  # m/s; treadmills go to 12
 WHOLE = re.compile(r"-?\d+")
 SOME = NumberRange(
-    f"a whole number from 1 to {MOST_MISSING}",
-    lambda value: 1.0 <= value <= MOST_MISSING and value.is_integer(),
+    f"a whole number from 1 to {MOST_MISSING}, or from -1 to -{MOST_MISSING}",
+    lambda value: 1.0 <= abs(value) <= MOST_MISSING and value.is_integer(),
 )
 SCALE = NumberRange("from 0.0001 to 10000", lambda value: 1e-4 <= value <= 1e4)  # any unit's
 NEAR_LEVEL = NumberRange("from -5 to 5 m/s", lambda value: abs(value) <= 5.0)

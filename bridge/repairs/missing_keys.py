@@ -1,4 +1,5 @@
-"""Frames that are missing in a recording, put into a copy of its action; the recording stays."""
+"""Frames that a recording lacks, put into a copy of its action, and those that are too many, taken
+out of it; the recording stays."""
 
 from __future__ import annotations
 
@@ -87,12 +88,13 @@ def _copied(
 
 
 def _put_into(curve: bpy.types.FCurve, missing: tuple[MissingFrames, ...]) -> None:
-    """Moves keys that come later, and where frames on both sides of a gap have keys, gives those in
-    it keys on the curve through them."""
+    """Moves keys that come later, and of those that then are on one frame leaves the first, whose
+    pose they hold. Where frames on both sides of a gap have keys, gives those in it keys on the
+    curve through them."""
     keys = fcurves.table(curve)
     at, values = keys["co"].T.astype(float)
     frames, added = list[float](), list[float]()
-    for gap in missing:
+    for gap in (gap for gap in missing if gap.count > 0):
         near = [int(k) for k in np.searchsorted(at, gap.after + _SUPPORT) if k < len(at)]
         near = [k for k, frame in zip(near, gap.after + _SUPPORT, strict=False) if at[k] == frame]
         if not {gap.after, gap.after + 1} <= set(at[near]):
@@ -106,16 +108,19 @@ def _put_into(curve: bpy.types.FCurve, missing: tuple[MissingFrames, ...]) -> No
             used, weights = lagrange(sound, frame)
             added.append(float(weights @ around[np.searchsorted(sound, used)]))
             frames.append(frame)
+    moved = np.array([_filled(frame, missing) for frame in at])
     for name in ("co", "handle_left", "handle_right"):
-        keys[name][:, 0] += np.array([_filled(frame, missing) - frame for frame in at])
+        keys[name][:, 0] += moved - at
+    stay = np.diff(moved, prepend=-np.inf) > 0.0
+    keys = {name: column[stay] for name, column in keys.items()}
     more = fcurves.linear_keys(keys, np.array(frames), np.array(added))
     fcurves.put(curve, fcurves.joined(keys, more))
     curve.update()
 
 
 def _filled(frame: float, missing: tuple[MissingFrames, ...]) -> float:
-    """Where a recorded frame goes."""
-    return frame + sum(gap.count for gap in missing if frame > gap.after)
+    """Where a recorded frame goes; one that is taken out to the pose that it repeats."""
+    return frame + sum(max(gap.count, gap.after - frame) for gap in missing if frame > gap.after)
 
 
 def _recorded(frame: float, missing: tuple[MissingFrames, ...]) -> float:

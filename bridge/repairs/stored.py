@@ -57,7 +57,7 @@ def _read_repairs(content: Any) -> Repairs:
 
 def _missing(content: Any) -> tuple[MissingFrames, ...]:
     gaps = [MissingFrames(int(number(after)), whole(n)) for after, n in listed(content)]
-    if not all(1 <= gap.count <= MOST_MISSING for gap in gaps):
+    if not all(1 <= abs(gap.count) <= MOST_MISSING for gap in gaps):
         raise ValueError(content)
     return tuple(gaps)
 

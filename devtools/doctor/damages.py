@@ -232,6 +232,33 @@ def held(count: int) -> Damage:
     return Damage(f"{count} frames held", FindingKind.HELD_FRAMES, do)
 
 
+def frozen(seconds: float, *, repeated: bool = False) -> Damage:
+    """A pose that is held amid fast movement: over others, or by frames that are put in."""
+
+    def do(recording: Recording, rng: np.random.Generator) -> Damaged:
+        count = round(seconds * recording.rate)
+        moving = _moving(recording, rng, len(recording.frames))
+        at = next(t for t in moving if t + count + 4 < len(recording.frames))
+        if repeated:
+            rows = np.insert(np.arange(len(recording.frames)), at, np.full(count, at))
+        else:
+            rows = np.arange(len(recording.frames))
+            rows[at + 1 : at + count + 1] = at
+        index = np.arange(len(rows))
+        damaged = replace(
+            recording,
+            frames=recording.frames[0] + index,
+            times=index / recording.rate,
+            heads=recording.heads[rows],
+            rotations=recording.rotations[rows],
+        )
+        return Damaged(damaged, recording)
+
+    kind = FindingKind.REPEATED_FRAMES if repeated else FindingKind.HELD_FRAMES
+    what = "put in" if repeated else "held"
+    return Damage(f"a pose {what} for {seconds:g} s", kind, do)
+
+
 def dropped(count: int) -> Damage:
     """Single frames missing, so that the rest comes earlier."""
 
@@ -450,6 +477,7 @@ DAMAGES = (
     *map(flipped, (2, 12)),
     *(wrapped(part, n) for part in (Part.PELVIS, Part.THIGH) for n in (2, 6)),
     *map(held, (1, 6)),
+    *(frozen(0.3, repeated=each) for each in (False, True)),
     *map(dropped, (1, 4)),
     *map(gap, (3, 6)),
     gap(2, 2),

@@ -29,7 +29,10 @@ SENTENCES = {
     FindingKind.EXCHANGED_ARMS: f"The left and the right arm {EXCHANGED}",
     FindingKind.FLIP: "{part} is turned by half a turn {where}.",
     FindingKind.SPIKE: "Frames are far from those around them, {part} by {amount}: {where}.",
-    FindingKind.HELD_FRAMES: "The pose of the frame before is held amid a movement {where}.",
+    FindingKind.HELD_FRAMES: "The pose of the frame before is held {where}, amid a "
+    "movement that goes on as if time had passed.",
+    FindingKind.REPEATED_FRAMES: "The pose is held {where} and the movement then goes on from "
+    "where it stopped: {n:.0f} frames are too many.",
     FindingKind.DROPPED_FRAMES: "About {n:.0f} frames are missing: the whole body jumps {where}.",
     FindingKind.BONE_LENGTH: "{part} changes its length by up to {n:.1f} cm {where}{end}.",
     FindingKind.NOISE: "The joints tremble by {n:.1f} mm from frame to frame, {part} most.",
@@ -84,6 +87,7 @@ REMEDIES = {
     FindingKind.FLIP: "Turn Back",
     FindingKind.SPIKE: "Smooth Over",
     FindingKind.HELD_FRAMES: "Fill In",
+    FindingKind.REPEATED_FRAMES: "Take Out",
     FindingKind.DROPPED_FRAMES: "Put In",
     FindingKind.BONE_LENGTH: "Hold Lengths",
     FindingKind.NOISE: "Smooth",

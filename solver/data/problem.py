@@ -27,11 +27,11 @@ class Mend(Enum):
     """A repair of poses, or of how the body stands. Its value is the word in recipes."""
 
     FULL_TURNS = "full turns"
+    HELD_FRAMES = "held frames"
     LEGS = "exchanged legs"
     ARMS = "exchanged arms"
     FLIPS = "flips"
     SPIKES = "spikes"
-    HELD_FRAMES = "held frames"
     BONE_LENGTHS = "bone lengths"
     NOISE = "noise"
     FLOATING = "floating"

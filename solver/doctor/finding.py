@@ -19,6 +19,7 @@ class FindingKind(Enum):
     FLIP = "flip"
     SPIKE = "spike"
     HELD_FRAMES = "held frames"
+    REPEATED_FRAMES = "repeated frames"
     DROPPED_FRAMES = "dropped frames"
     BONE_LENGTH = "bone length"
     NOISE = "noise"

@@ -23,7 +23,8 @@ class UpAxis(Enum):
 
 @dataclass(frozen=True)
 class MissingFrames:
-    """Frames that were not recorded: `count` of them, after a scene frame."""
+    """Frames that were not recorded: `count` of them, after a scene frame. Below 0 so many after it
+    are too many, which repeat its pose."""
 
     after: int
     count: int
@@ -33,7 +34,8 @@ class MissingFrames:
 class Repairs:
     """What to mend, in this order; the defaults leave a recording as it is.
 
-    up: what becomes Z. missing: frames that are put in; all others of a recipe count with them.
+    up: what becomes Z. missing: frames that are put in, or taken out; all others of a recipe
+    count with them.
     trim, trim_end: frames left out at the beginning and at the end. mend: of the poses.
     time_scale, scale: factors of durations and of lengths. drift and rise: m/s, along the
     floor and upwards, that are taken out, and floor: m, the height that becomes 0; all after the
@@ -69,7 +71,9 @@ class Repairs:
             for f in fields(Repairs)
             if getattr(other, f.name) != getattr(usual, f.name)
         }
-        return replace(self, **{**kept, "mend": tuple(m for m in self.mend if m not in other.mend)})
+        kept["mend"] = tuple(each for each in self.mend if each not in other.mend)
+        kept["missing"] = tuple(gap for gap in self.missing if gap not in other.missing)
+        return replace(self, **kept)
 
     def includes(self, other: Repairs) -> bool:
         """Whether these change all that the other changes."""
@@ -82,7 +86,7 @@ class Repairs:
         mend = {*self.mend, *other.mend}
         return Repairs(
             other.up if other.up is not usual.up else self.up,
-            other.missing or self.missing,
+            tuple(sorted({*self.missing, *other.missing}, key=lambda gap: (gap.after, gap.count))),
             max(self.trim, other.trim),
             tuple(each for each in Mend if each in mend),
             other.time_scale if other.time_scale != 1.0 else self.time_scale,

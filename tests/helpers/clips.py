@@ -44,6 +44,16 @@ def without_frames(clip: Path, after: int, count: int, folder: Path) -> Path:
     return copy
 
 
+def with_frames_repeated(clip: Path, after: int, count: int, folder: Path) -> Path:
+    """A copy of a BVH file in which a frame (the first is 1) is held for so many more."""
+    text, motion = clip.read_text().split("MOTION\n")
+    _, time, *frames = motion.splitlines()
+    held = frames[:after] + count * [frames[after - 1]] + frames[after:]
+    copy = folder / "with_frames_repeated.bvh"
+    copy.write_text("\n".join([f"{text}MOTION", f"Frames: {len(held)}", time, *held, ""]))
+    return copy
+
+
 def begun_at_rest(clip: Path, folder: Path, *, ended: bool = False) -> Path:
     """A copy of a BVH file with the rest pose, whose angles are 0, on its first frame. ended: and
     on its last."""

@@ -11,8 +11,10 @@ from hangtime.solver.doctor.figure import Figure, figure_of
 from hangtime.solver.doctor.finding import Finding
 from hangtime.solver.doctor.frames.exchanges import LIMBS, find_exchange
 from hangtime.solver.doctor.frames.flips import find_flips
+from hangtime.solver.doctor.frames.full_turns import find_full_turns
+from hangtime.solver.doctor.frames.holds import find_held, find_repeated
 from hangtime.solver.doctor.frames.jumps import find_jumps
-from hangtime.solver.doctor.frames.missing import find_dropped, find_held
+from hangtime.solver.doctor.frames.missing import find_dropped
 from hangtime.solver.doctor.frames.spikes import find_spikes
 from hangtime.solver.doctor.lengths import find_lengths
 from hangtime.solver.doctor.noise import find_noise
@@ -41,9 +43,11 @@ def of_poses(recording: Recording) -> list[Finding]:
     """What the poses alone tell, each as the remedies before leave them."""
     found = []
     for find in (
+        partial(find_full_turns, figure=figure()),
+        *(find_held, find_repeated),
         *(partial(find_exchange, figure=figure(), limbs=each) for each in LIMBS),
         *(partial(each, figure=figure()) for each in (find_flips, find_spikes)),
-        *(find_held, find_dropped),
+        find_dropped,
         partial(find_jumps, figure=figure()),
         *(partial(each, figure=figure()) for each in (find_lengths, find_noise)),
     ):

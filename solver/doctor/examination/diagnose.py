@@ -24,8 +24,9 @@ from ..finding import Finding, FindingKind
 from ..frames.exchanges import KINDS, LIMBS, find_exchange
 from ..frames.flips import find_flips
 from ..frames.full_turns import find_full_turns
+from ..frames.holds import find_held, find_repeated
 from ..frames.jumps import find_jumps
-from ..frames.missing import find_dropped, find_held
+from ..frames.missing import find_dropped
 from ..frames.spikes import find_spikes
 from ..lengths import find_lengths
 from ..noise import find_noise, reach
@@ -35,7 +36,7 @@ from ..stretch import CUTTING, Span, longest_stretch
 from ..upright import find_level_hips, find_up
 from .drifts import find_drifts
 from .ground import as_stood
-from .repair import placed_skin, repaired
+from .repair import placed_skin, repaired, taken_out
 from .scales import find_scales
 
 PARTING = (FindingKind.JUMP, FindingKind.LEAP)
@@ -103,13 +104,17 @@ def diagnose(
     recording = scaled_recording(recording, size)  # limits in metres are those of persons
     told(0.05)
     recording = cured(recording, find_full_turns(recording, figure))
+    recording = cured(recording, find_held(recording))
+    repeated = find_repeated(recording)
+    if repeated is not None:  # and cured without another number for any frame
+        found.append(repeated)
+        recording = taken_out(recording, _remedy(repeated).missing)
     for limbs in LIMBS:
         recording = cured(recording, find_exchange(recording, figure, limbs))
     told(0.1)
     for find in (find_flips, find_spikes):
         recording = cured(recording, find(recording, figure))
     told(0.2)
-    recording = cured(recording, find_held(recording))
     dropped = find_dropped(recording)
     if dropped is not None:
         found.append(dropped)  # and not cured: what else is found is told by the frames that are

@@ -18,7 +18,7 @@ from ..figure import Figure, figure_of
 from ..frames.exchanges import exchanged_back
 from ..frames.flips import unflipped
 from ..frames.full_turns import without_full_turns
-from ..frames.missing import held_frames
+from ..frames.holds import held_frames
 from ..frames.spikes import unsound_spikes
 from ..lengths import kept_lengths
 from ..local_poses import LocalPoses
@@ -127,7 +127,8 @@ def _rotated(recording: Recording, turn: FloatArray) -> Recording:
 
 
 def filled(recording: Recording, missing: tuple[MissingFrames, ...]) -> Recording:
-    """With frames put in, on the curve through those around; what comes after them comes later.
+    """With frames put in, on the curve through those around, and taken out; what comes after them
+    comes later, or earlier.
 
     Raises NotBetweenFrames.
     """
@@ -137,20 +138,32 @@ def filled(recording: Recording, missing: tuple[MissingFrames, ...]) -> Recordin
     for gap in missing:
         if not first <= gap.after < last:
             raise NotBetweenFrames(gap.after, first, last)
-    counts = [sum(gap.count for gap in missing if gap.after < frame) for frame in recording.frames]
-    at = np.arange(len(recording.frames)) + np.array(counts)  # where each recorded frame goes
+    kept, lacks = taken_out(recording, missing), [gap for gap in missing if gap.count > 0]
+    counts = [sum(gap.count for gap in lacks if gap.after < frame) for frame in kept.frames]
+    at = np.arange(len(kept.frames)) + np.array(counts)  # where each recorded frame goes
     source = np.searchsorted(at, np.arange(at[-1] + 1))
     unsound = np.isin(np.arange(at[-1] + 1), at, invert=True)
-    longer = Recording(
+    filled_in = Recording(
         recording.name,
         recording.bones,
-        first + np.arange(at[-1] + 1) * (last - first) / (len(at) - 1),
+        first + np.arange(at[-1] + 1) * (last - first) / (len(recording.frames) - 1),
         recording.times[0] + np.arange(at[-1] + 1) / recording.rate,
-        recording.heads[source],
-        recording.rotations[source],
+        kept.heads[source],
+        kept.rotations[source],
     )
-    bones = np.broadcast_to(unsound[:, None], longer.heads.shape[:2])
-    return LocalPoses.of(longer).filled(bones).posed(longer)
+    bones = np.broadcast_to(unsound[:, None], filled_in.heads.shape[:2])
+    return LocalPoses.of(filled_in).filled(bones).posed(filled_in)
+
+
+def taken_out(recording: Recording, missing: tuple[MissingFrames, ...]) -> Recording:
+    """Without frames that are too many; what comes after them comes earlier, by the numbers that
+    its frames had."""
+    extra = np.zeros(len(recording.frames), bool)
+    for gap in missing:
+        extra |= (recording.frames > gap.after) & (recording.frames <= gap.after - gap.count)
+    kept = recording.part(~extra)
+    times = recording.times[0] + np.arange(len(kept.frames)) / recording.rate
+    return replace(kept, times=times) if extra.any() else recording
 
 
 def check_trim(repairs: Repairs, frames: int) -> None:

@@ -1,4 +1,4 @@
-"""Poses that are held amid a movement, and frames that are missing."""
+"""Frames that are missing."""
 
 from __future__ import annotations
 
@@ -9,16 +9,13 @@ from itertools import product
 import numpy as np
 
 from ...arrays import BoolArray, FloatArray
-from ...data.problem import Mend
 from ...data.recording import Recording
 from ..finding import Finding, FindingKind
-from ..local_poses import runs, spans
+from ..local_poses import spans
 from ..repairs import MissingFrames, Repairs
 from ..slack import SPARSE
 
-HELD = 1e-5  # m and entries of a matrix; a pose that changes by less is held
-MOVING = 1e-3  # m, of the farthest joint from a frame to the next, beside a pose that is held
-LONGEST_HELD = 0.25  # s; a longer one is a pause
+MOVING = 1e-3  # m, of the farthest coordinate from a frame to the next
 # Missing frames of steps side by side.
 COUNTS = (
     *((count,) for count in range(1, 11)),
@@ -30,30 +27,6 @@ NEARER = 2.2  # times, to a cubic, if the frames are missing; where two are, two
 STANDS_OUT = 2.5  # times the median of how far those around are from one
 ROUNDING = 1e-7  # m, of places in single precision; what is nearer to a cubic is on it
 ALIKE = 0.4  # of a step, by which it may differ from its neighbours' way
-
-
-def held_frames(recording: Recording) -> BoolArray:
-    """(T,) frames in which a body that moves before and after has the pose of the frame before."""
-    steps = _steps(recording)
-    turned = np.abs(np.diff(recording.rotations, axis=0)).max(axis=(1, 2, 3))
-    still = (steps < HELD) & (turned < HELD)
-    out = np.zeros(len(recording.frames), bool)
-    for first, last in runs(still):
-        inside = first > 0 and last < len(steps) - 1
-        short = (last - first + 1) / recording.rate <= LONGEST_HELD
-        if inside and short and min(steps[first - 1], steps[last + 1]) > MOVING:
-            out[first + 1 : last + 2] = True
-    return out
-
-
-def find_held(recording: Recording) -> Finding | None:
-    """Poses that are held, or doubled, amid a movement."""
-    held = held_frames(recording)
-    if not held.any():
-        return None
-    remedy = Repairs(mend=(Mend.HELD_FRAMES,))
-    count = float(held.sum())
-    return Finding(FindingKind.HELD_FRAMES, count, "frames", spans(recording, held), "", remedy)
 
 
 def find_dropped(recording: Recording) -> Finding | None:
@@ -154,8 +127,3 @@ def _is_alike(moves: FloatArray, several: int, count: int) -> BoolArray:
         alike &= rest < ALIKE * np.linalg.norm(own, axis=1)
         alike &= np.abs(usual).max(axis=1) > MOVING
     return alike
-
-
-def _steps(recording: Recording) -> FloatArray:
-    """(T - 1,) m, by which the joint that moves most does so from a frame to the next."""
-    return np.asarray(np.linalg.norm(np.diff(recording.heads, axis=0), axis=2).max(axis=1))

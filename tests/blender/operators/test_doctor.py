@@ -19,7 +19,12 @@ from hangtime.operators.headless.stages import Stages
 from hangtime.solver.data.faults import NotBetweenFrames, NothingLeft, OddScale
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis
-from hangtime.tests.helpers.clips import begun_at_rest, mocap_path, without_frames
+from hangtime.tests.helpers.clips import (
+    begun_at_rest,
+    mocap_path,
+    with_frames_repeated,
+    without_frames,
+)
 
 CLIP = "forward_jump_116cm.bvh"
 TOO_LARGE = 0.12  # m a unit, 2.13 times what is right
@@ -103,6 +108,21 @@ def test_missing_frames_are_put_in_as_without_blender(tmp_path: Path, capsys) ->
         wanted = right.window(*problem.frames)
         np.testing.assert_array_equal(mended.window(*problem.frames).frames, wanted.frames)
         assert np.abs(mended.window(*problem.frames).heads - wanted.heads).max() < 2e-3
+
+
+def test_frames_that_are_too_many_are_taken_out_as_without_blender(tmp_path: Path, capsys) -> None:
+    """A jump that is held in the air for 0.3 s: it was told as missing frames and a wrong clock."""
+    clip, recipe = with_frames_repeated(mocap_path(CLIP), 195, 36, tmp_path), tmp_path / "m.toml"
+    assert main(["doctor", str(clip), "--write-recipe", str(recipe)]) == 0
+    assert "remedy: missing = { 195 = -36 }" in capsys.readouterr().out
+    repairs = parse_recipe(recipe.read_text(encoding="utf-8")).repairs
+    problem = MotionProblem(frames=(100.0, 290.0))
+    wanted = read_clip(mocap_path(CLIP), problem).recording.window(*problem.frames)
+    plain = read_clip(clip, problem, repairs).recording
+    in_blender = load(Clip(clip), problem, Stages(StringIO()), repairs).subject.recording
+    for mended in (plain.window(*problem.frames), in_blender.window(*problem.frames)):
+        np.testing.assert_array_equal(mended.frames, wanted.frames)
+        np.testing.assert_allclose(mended.heads, wanted.heads, atol=1e-4)
 
 
 def test_frames_after_the_last_one_are_not_put_in_here_either() -> None:

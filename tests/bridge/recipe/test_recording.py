@@ -8,8 +8,8 @@ from hangtime.solver.data.faults import BadRecipe
 from hangtime.solver.data.problem import Mend, MotionProblem
 from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis
 
-MISSING = (MissingFrames(-5, 1), MissingFrames(57, 4))
-MENDS = (Mend.FLIPS, Mend.HELD_FRAMES)
+MISSING = (MissingFrames(-5, 1), MissingFrames(57, 4), MissingFrames(103, -36))
+MENDS = (Mend.HELD_FRAMES, Mend.FLIPS)
 FULL = Repairs(UpAxis.MINUS_X, MISSING, 2, MENDS, 0.8, 1.6, (0.1, -0.25), 0.12, 30, -0.05)
 
 
