@@ -7,22 +7,27 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...solver.analysis.performance import perform
 from ...solver.arrays import FloatArray, IntArray
 from ...solver.body.anatomy import Part
+from ...solver.body.character import build_character
 from ...solver.data.problem import Mend
 from ...solver.data.recording import Recording
 from ...solver.data.scaling import scaled_recording
 from ...solver.doctor.examination.repair import turned
+from ...solver.doctor.falls import each_fall
 from ...solver.doctor.figure import figure_of
 from ...solver.doctor.finding import FindingKind
 from ...solver.doctor.frames.exchanges import KINDS, LIMBS
 from ...solver.doctor.limbs import partners
 from ...solver.doctor.local_poses import LocalPoses
 from ...solver.doctor.repairs import Repairs, UpAxis
+from ...solver.doctor.retimed import LONG
 from ...solver.numerics.interpolation import interpolate
 from ...solver.numerics.rotations import axis_rotation, rotation_matrix
 
 SEED = 7
+AROUND = 6  # frames about a flight, that are retimed with it
 VIDEO_RATE, FAST_RATE = 30.0, 120.0  # Hz, of one camera and of several
 
 
@@ -38,12 +43,14 @@ class Damaged:
 
 @dataclass(frozen=True)
 class Damage:
-    """kind: of the finding that names it rightly, and also: others that do so together with it."""
+    """kind: of the finding that names it rightly, and also: others that do so together with it.
+    possible: whether a recording can be damaged so."""
 
     name: str
     kind: FindingKind
     do: Callable[[Recording, np.random.Generator], Damaged]
     also: tuple[FindingKind, ...] = ()
+    possible: Callable[[Recording], bool] = lambda _: True
 
     def of(self, recording: Recording) -> Damaged:
         """The damage done to a recording, alike in every run."""
@@ -57,6 +64,27 @@ def slowed(factor: float) -> Damage:
         return Damaged(replace(recording, times=factor * recording.times), recording, factor)
 
     return Damage(f"time × {factor:g}", FindingKind.TIME_SCALE, do)
+
+
+def ramped(factor: float) -> Damage:
+    """A flight, of several, with some frames around it, played too slowly, or too fast."""
+
+    def do(recording: Recording, rng: np.random.Generator) -> Damaged:
+        flights = _long_flights(recording)
+        first, last = flights[int(rng.integers(len(flights)))]
+        inside = (recording.frames >= first - AROUND) & (recording.frames < last + AROUND)
+        steps = np.diff(recording.times) * np.where(inside[:-1], factor, 1.0)
+        times = np.concatenate([[0.0], np.cumsum(steps)])
+        return Damaged(at_rate(replace(recording, times=times), recording.rate), recording)
+
+    name = f"a flight's time × {factor:.2g}"
+    return Damage(name, FindingKind.RETIMED, do, possible=lambda r: len(_long_flights(r)) > 1)
+
+
+def _long_flights(recording: Recording) -> list[tuple[float, float]]:
+    """First and last scene frames of those that tell a clock."""
+    found, spans = each_fall(perform(recording, build_character(recording)))
+    return [span for span, (_, seconds) in zip(spans, found, strict=True) if seconds > LONG]
 
 
 def sized(factor: float, name: str) -> Damage:
@@ -459,6 +487,7 @@ def _moving(recording: Recording, rng: np.random.Generator, count: int) -> list[
 
 DAMAGES = (
     *map(slowed, (0.5, 0.8, 1.25, 2.0)),
+    *map(ramped, (1.5, 1 / 1.5)),
     sized(1.6, "size × 1.6"),
     sized(2.54, "centimetres as inches"),
     sized(1 / 2.54, "inches as centimetres"),

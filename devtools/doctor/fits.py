@@ -63,7 +63,7 @@ def fits(
     """Of a clip's part as it is and with each damage, repaired as the doctor offers, and of the
     whole's longest part without flight."""
     yield fitted(name, "", part, part)
-    for damage in damages:
+    for damage in (each for each in damages if each.possible(part)):
         damaged = damage.of(part)
         yield fitted(name, damage.name, damaged.recording, damaged.original)
     try:

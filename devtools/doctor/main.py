@@ -126,7 +126,8 @@ def first_part(name: str, recording: Recording) -> Recording:
 def examine_all(name: str, recording: Recording) -> list[Examined]:
     """A clip as it is, and, without faults of its own, with each damage."""
     part = first_part(name, recording)
-    found = [examine_clean(name, recording), *(examine(name, part, each) for each in DAMAGES)]
+    damages = [each for each in DAMAGES if each.possible(part)]
+    found = [examine_clean(name, recording), *(examine(name, part, each) for each in damages)]
     missed = ", ".join(each.damage for each in found if not each.found) or "nothing"
     print(f"{name}: missed {missed}", flush=True)
     return found

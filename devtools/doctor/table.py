@@ -26,6 +26,7 @@ size, median and worst over the clips where it was found. One clip has a fault o
 finding is no false alarm: the hips of rokoko_jesse_dance leap in frames 8 to 13, and the feet are
 4 to 16 cm above the floor from then on; it is mended before it is damaged. Limbs are exchanged from
 where they differ most; that of legs which the noise of video makes alike at its ends is not told.
+A flight among others is retimed where a clip has two that tell a clock, of 0.2 s or more.
 
 Time and size are told from gravity in the flights, no nearer than the clip itself has it: {bound}
 A run's flights of 0.1 s do not tell enough, but where the frame rate that they tell is near a usual

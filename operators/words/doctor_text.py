@@ -1,7 +1,10 @@
 """Wording of what the doctor finds: what is wrong, where, and the remedy."""
 
+from math import sqrt
+
 from ...bridge.recipe.recording import RECORDING
 from ...bridge.recipe_syntax.toml_text import entries
+from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.faults import Damage
 from ...solver.data.recording import MIN_CLIP_DURATION
 from ...solver.doctor.examination.diagnose import Diagnosis
@@ -40,6 +43,8 @@ SENTENCES = {
     "by {n:.0f} % of their length: how the body rises and sinks was left out, so nothing it does "
     "obeys gravity.",
     FindingKind.TIME_SCALE: "The body falls at {n:.1f} m/s² {where}, not at 9.8: {clock}.",
+    FindingKind.RETIMED: "The body falls at {n:.1f} m/s² {where}, and at about 9.8 in other "
+    "flights: that part was retimed, so {clock}.",
     FindingKind.SIZE: "The figure is {n:.2g} m tall, which nobody is.",
     FindingKind.TOO_SHORT: "The clip is {n:.2f} s long, too short to be adapted: a jump needs "
     f"{MIN_CLIP_DURATION:g} s at least.",
@@ -74,6 +79,7 @@ ADVICE = {
     FindingKind.LEAP: " Choose frames without it.",
     FindingKind.IN_PLACE: " Export the recording again without “In Place”.",
     FindingKind.SINKING: " Raise the hips there, by the depth, or choose frames without it.",
+    FindingKind.RETIMED: " Give it its own speed again, or choose frames without it.",
     FindingKind.LEVEL_HIPS: " Export the recording again with the hips' height.",
 }
 
@@ -205,6 +211,8 @@ def _where(finding: Finding) -> str:
 
 def _clock(finding: Finding) -> str:
     scale = finding.remedy.time_scale if finding.remedy is not None else 1.0
+    if finding.kind is FindingKind.RETIMED:
+        scale = sqrt(finding.amount / STANDARD_GRAVITY)
     if scale < 1.0:
         return f"it is played {1.0 / scale:.2f} times too slowly"
     return f"it is played {scale:.2f} times too fast"

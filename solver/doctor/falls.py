@@ -76,6 +76,13 @@ ALL = Trusted()
 def falls_of(performance: Performance, trusted: Trusted = ALL) -> Falls | None:
     """The falls of a recording that are trusted; None where there are none that are parabolas, or
     they do not agree."""
+    found, spans = each_fall(performance, trusted)
+    return _agreed(found, spans) if spans else None
+
+
+def each_fall(performance: Performance, trusted: Trusted = ALL) -> tuple[FloatArray, Spans]:
+    """(N, 2) accelerations downwards, m/s², and durations, s, of those that are trusted and are
+    parabolas, and their scene frames."""
     points, floor = contact_points(performance)
     feet = [point.track[:, 2] for point in points.values() if point.kind is not PointKind.HAND]
     height = performance.character.height
@@ -96,7 +103,7 @@ def falls_of(performance: Performance, trusted: Trusted = ALL) -> Falls | None:
         if curve[0] < 0.0 < fall and smooth:
             found.append((fall, float(clock[-1])))
             spans.append(span)
-    return _agreed(np.array(found), tuple(spans)) if found else None
+    return np.array(found).reshape(-1, 2), tuple(spans)
 
 
 def _agreed(found: FloatArray, spans: Spans) -> Falls | None:

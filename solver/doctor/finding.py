@@ -25,6 +25,7 @@ class FindingKind(Enum):
     NOISE = "noise"
     LEVEL_HIPS = "level hips"
     TIME_SCALE = "time scale"
+    RETIMED = "retimed part"
     SIZE = "size"
     TOO_SHORT = "too short"
     MASS = "mass"

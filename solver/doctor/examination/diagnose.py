@@ -31,6 +31,7 @@ from ..frames.spikes import find_spikes
 from ..lengths import find_lengths
 from ..noise import find_noise, reach
 from ..repairs import Repairs
+from ..retimed import explained, find_retimed
 from ..stance.footing import find_footing
 from ..stretch import CUTTING, Span, longest_stretch
 from ..upright import find_level_hips, find_up
@@ -150,6 +151,9 @@ def diagnose(
     height, seconds = performance.character.height, float(performance.times[-1])
     if seconds < MIN_CLIP_DURATION:
         found.append(Finding(FindingKind.TOO_SHORT, seconds, "s"))
+    retimed = None if scales else find_retimed(performance, _trusted(found, rate))
+    if retimed is not None:
+        found.append(retimed)
     leaps = find_leaps(performance)
     near = LEAP_WINDOW * recording.rate
     if leaps is not None and not _are_at(leaps, _places(found, *GAPS), near):
@@ -164,7 +168,8 @@ def diagnose(
     drifts = find_drifts(lambda repairs: as_stood(performed(repairs), scene), figure, placed)
     found += drifts
     placed = reduce(Repairs.joined, map(_remedy, drifts), placed)
-    found += find_footing(as_stood(performed(placed), scene), touched(placed))
+    footing = find_footing(as_stood(performed(placed), scene), touched(placed))
+    found += footing if retimed is None else explained(footing, retimed)
     fitting = None
     if mass is not None and not (MASS_BY_SQUARE[0] < mass / height**2 < MASS_BY_SQUARE[1]):
         fitting = USUAL_MASS_BY_SQUARE * height**2
