@@ -263,7 +263,7 @@ class HangtimeSettings(bpy.types.PropertyGroup):
             "Good Enough (mm)",
             "A contact that no motion holds exactly may be off its place by this; the report tells "
             "by how much it is. One that is further off is let go",
-            default=0.5,
+            default=2.0,
             min=0.0,
             soft_max=10.0,
             max=100.0,

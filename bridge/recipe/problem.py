@@ -7,7 +7,7 @@ height = 1.69                   # m, 0.3 to 3, optional
 mass_table = "thesis"           # or "de leva"
 unseen_support = "show"         # fits and tells where something unseen carries; or "refuse"
 mirrored = false                # left does what right did; pins and contacts change sides as well
-good_enough = 0.0005            # m by which a contact that cannot be held exactly may be off
+good_enough = 0.002             # m by which a contact that cannot be held exactly may be off
 [bones]                         # optional: part of the body = bone
 "left foot" = "Fuss.L"
 [[pin]]                         # any number of them

@@ -364,15 +364,17 @@ def _closed(
 def _stands(times: FloatArray, com: FloatArray | None, gap: Interval) -> bool:
     """Whether a gap at an end of the recording is one that noise leaves in the contacts of who
     stands: of a frame or two, which tell no acceleration, and of a body that is slower up and down
-    than one that lands or leaves."""
+    at all of them than one that lands or leaves: about the highest point it comes back."""
     at_end = gap.start <= times[0] or gap.end >= times[-1]
     seconds = gap.end - gap.start
     if com is None or not at_end or seconds > MAX_DELAY:
         return False
     if _off_gravity(times, com, gap) is not None:
         return False
-    first, last = np.interp([gap.start, gap.end], times, com[:, 2])
-    return bool(abs(last - first) < LEAST_FALL * seconds)
+    within = times[(times > gap.start) & (times < gap.end)]
+    instants = np.concatenate([[gap.start], within, [gap.end]])
+    speeds = np.diff(np.interp(instants, times, com[:, 2])) / np.diff(instants)
+    return bool(np.abs(speeds).max() < LEAST_FALL)
 
 
 def _falls(times: FloatArray, com: FloatArray | None, gap: Interval) -> bool:

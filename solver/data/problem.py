@@ -111,7 +111,7 @@ class MotionProblem:
     loop: bool = False
     skin: Skin | None = None
     unseen: Unseen = Unseen.SHOW
-    good_enough: float = 5e-4
+    good_enough: float = 2e-3  # a point that is let go slides by more
     mend: tuple[Mend, ...] = ()
     drift: tuple[float, float] = (0.0, 0.0)
     rise: float = 0.0

@@ -82,6 +82,15 @@ def test_a_landing_between_coarse_frames_is_the_same_wherever_the_range_begins()
     assert np.abs(np.array(landings) - usual.end).max() < 1.0 / rate
 
 
+@pytest.mark.parametrize("rate", [24, 30])
+def test_the_last_frames_of_a_run_fly_though_the_body_is_about_its_highest_point(rate: int) -> None:
+    """In two or three frames there it goes up and comes back, and tells no acceleration."""
+    recording = load_recording("run_1.bvh")
+    usual, coarse = (schedule_of(each).flights for each in (recording, at_rate(recording, rate)))
+    assert len(coarse) == len(usual) == 4
+    assert coarse[-1].start == pytest.approx(usual[-1].start, abs=0.5 / rate)
+
+
 @pytest.mark.parametrize("clip", ["run_1.bvh", "run_2.bvh", "fair1_jumping.bvh", JUMP])
 def test_heel_and_toe_hand_over(clip: str) -> None:
     """The force moves along the foot while both ends are down."""
