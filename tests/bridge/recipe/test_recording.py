@@ -49,9 +49,9 @@ def test_a_mistake_is_told_with_its_line(line: str) -> None:
 
 
 def test_what_is_good_enough_comes_back() -> None:
-    problem = parse_recipe("good_enough = 0.002").problem
-    assert problem.good_enough == 0.002
-    assert "good_enough = 0.002" in write_recipe(problem)
+    problem = parse_recipe("good_enough = 0.003").problem
+    assert problem.good_enough == 0.003
+    assert "good_enough = 0.003" in write_recipe(problem)
     assert "good_enough" not in write_recipe(MotionProblem())
     with pytest.raises(BadRecipe, match="zero or more"):
         parse_recipe("good_enough = -1")
