@@ -29,6 +29,10 @@ ROUNDS = 8  # of narrowing the speeds to the half that agree best
 DRIFT = 0.12  # m/s; feet that roll over in runs leave 0.1
 FLAT_FAST = 0.8 * FLAT_SPEED  # m/s, of which feet that stand flat no longer tell
 FLAT_DRIFT = 0.04  # m/s, of feet that stand flat; honest ones leave 0.014
+APART = 0.1  # s, and a frame: what stands after it stands anew
+HONEST = 0.03  # m, by which feet go in a stance; as their load shifts they roll and turn
+LEAST_SLID = 0.06  # m, in all stances, likewise
+TOLD_WITHIN = 0.25  # of a drift's way in a stance; feet that roll on a belt leave as much
 ALIKE = 0.75  # of the drift, by which half of all speeds differ from it at most; noise leaves more
 LEAST_STANCE, LEAST_STANDING = 0.3, 12  # s, and frames: half of fewer slide alike by chance
 LEAST_SHARE = 0.1  # of a clip, in which something stands, likewise: a dance's few moments turn feet
@@ -105,18 +109,20 @@ def _sinking(performance: Performance) -> Finding | None:
 
 
 def find_sliding(performance: Performance, figure: Figure) -> Finding | None:
-    """Feet that all slide the same way at the same speed: the whole body drifts. By the lowest
-    points of feet, or by feet that stand flat, which tell less of a drift.
+    """Feet that in all stances slide the same way at the same speed: the whole body drifts. By the
+    lowest points of feet, or by feet that stand flat, which tell less of a drift.
 
     performance: as seen from what it stands on, in its right size and time.
     """
-    flat = FlatSamples.of(performance.recording, figure).velocities[:, :2]
-    lowest = standing(performance).velocities[:, :2]
     rate, share = performance.recording.rate, LEAST_SHARE * len(performance.times)
+    flat, lowest = (
+        _Slides.of(each.times, each.velocities, APART + 1.0 / rate)
+        for each in (FlatSamples.of(performance.recording, figure), standing(performance))
+    )
     least = max(LEAST_STANCE * rate, share, LEAST_STANDING)
-    told = _drift(flat, FLAT_DRIFT) if len(flat) >= least else None
-    if told is None and len(lowest) >= least:
-        slowest = FLAT_FAST if len(flat) >= least else DRIFT
+    told = _drift(flat, FLAT_DRIFT) if len(flat.speeds) >= least else None
+    if told is None and len(lowest.speeds) >= least:
+        slowest = FLAT_FAST if len(flat.speeds) >= least else DRIFT
         told = _drift(lowest, slowest)
     if told is None:
         return None
@@ -124,11 +130,41 @@ def find_sliding(performance: Performance, figure: Figure) -> Finding | None:
     return Finding(FindingKind.SLIDING, float(np.hypot(x, y)), "m/s", remedy=Repairs(drift=told))
 
 
-def _drift(speeds: FloatArray, slowest: float) -> tuple[float, float] | None:
-    """M/s, along the floor, that nearly all speeds (N, 2) have, in their order."""
-    middle, differ = _agreed(speeds)
+@dataclass(frozen=True)
+class _Slides:
+    """How feet slide while they stand: speeds (N, 2), m/s, in their order, and of each of S stances
+    how long it lasts, (S,) s, and its own speed, (S, 2) m/s."""
+
+    speeds: FloatArray
+    seconds: FloatArray
+    own: FloatArray
+
+    @staticmethod
+    def of(times: FloatArray, velocities: FloatArray, apart: float) -> _Slides:
+        """times: (N,) s, in order. velocities: (N, 3) m/s. apart: s, from a stance to the next."""
+        cuts, speeds = np.flatnonzero(np.diff(times) > apart) + 1, velocities[:, :2]
+        if not len(times):
+            return _Slides(speeds, np.zeros(0), np.zeros((0, 2)))
+        seconds = np.array([np.ptp(stance) for stance in np.split(times, cuts)])
+        own = np.array([np.median(stance, axis=0) for stance in np.split(speeds, cuts)])
+        return _Slides(speeds, seconds, own)
+
+    def tell(self, drift: FloatArray) -> bool:
+        """Whether they slide so far in all that honest feet do not, and without the drift (2,),
+        m/s, in each stance no further than these: one that is short tells too little alone."""
+        slid = float(np.linalg.norm(drift)) * self.seconds
+        left = np.linalg.norm(self.own - drift, axis=1) * self.seconds
+        agree = left < np.maximum(HONEST, TOLD_WITHIN * slid)
+        return bool(slid.sum() > LEAST_SLID and agree.all())
+
+
+def _drift(slides: _Slides, slowest: float) -> tuple[float, float] | None:
+    """M/s, along the floor, that nearly all speeds have, and each stance."""
+    middle, differ = _agreed(slides.speeds)
     speed = float(np.linalg.norm(middle))
-    if speed < slowest or differ > ALIKE * speed or not _is_steady(speeds):
+    if speed < slowest or differ > ALIKE * speed or not _is_steady(slides.speeds):
+        return None
+    if not slides.tell(middle):
         return None
     x, y = map(float, middle)
     return x, y

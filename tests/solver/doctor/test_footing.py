@@ -26,7 +26,7 @@ from hangtime.solver.doctor.finding import FindingKind
 from hangtime.solver.doctor.stance.feet import FootFaultKind, find_feet
 from hangtime.solver.doctor.stance.footing import find_footing, find_rise, find_sliding
 from hangtime.solver.doctor.stance.in_place import find_in_place
-from hangtime.tests.helpers.clips import load_recording
+from hangtime.tests.helpers.clips import JUMP, load_recording
 from hangtime.tests.helpers.doctored import character, figure, jump
 
 
@@ -46,6 +46,25 @@ def test_height_and_drift_are_told_and_taken_out(damage: Damage, metres: float) 
     assert found.kind is damage.kind
     assert found.remedy is not None
     assert apart(repaired(damaged.recording, found.remedy), damaged.original) < metres
+
+
+def test_a_short_stance_alone_tells_no_drift() -> None:
+    """The feet of who lands roll and turn by 2 cm."""
+    part = jump().window(170.0, 300.0)
+    assert find_sliding(perform(part, character()), figure()) is None
+
+
+@pytest.mark.parametrize(("slid", "told"), [((0.1, 0.1), True), ((0.08, 0.15), False)])
+def test_drift_is_what_both_stances_tell(slid: tuple[float, float], told: bool) -> None:
+    """slid: m/s, before the flight and after it."""
+    recording = load_recording(JUMP).window(2.0, 325.0)
+    (flight,) = find_contacts(perform(recording, character())).flights
+    after = np.clip(recording.times - 0.5 * (flight.start + flight.end), 0.0, None)
+    before = recording.times - after
+    way = np.outer(slid[0] * before + slid[1] * after, [0.8, -0.6, 0.0])
+    moved = replace(recording, heads=recording.heads + way[:, None])
+    found = find_sliding(perform(moved, character()), figure())
+    assert (found is not None) is told
 
 
 @pytest.mark.parametrize(("landed", "floors"), [(False, 0), (True, 1)])
