@@ -41,7 +41,7 @@ def store_overlaps(action: bpy.types.Action, report: Report) -> None:
 
 
 def shown_overlaps(action: bpy.types.Action | None, *, adapted: bool) -> tuple[ShownOverlap, ...]:
-    """Of the adapted motion, or of the recording that it was made from."""
+    """Of the adapted motion, or of the fit to the recording that it was made from."""
     stored = action_settings(action).overlaps if action is not None else ""
     return OVERLAPS.of(stored)[adapted]
 

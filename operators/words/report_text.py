@@ -214,18 +214,7 @@ def _quality(report: Report) -> Iterator[str]:
     fit = report.fit_to_recording
     joints = f"joints {fit.joint_centres_rms_cm:.1f} cm from the recording (rms)"
     yield f"{'Fit':<12}{joints}{apex_words(fit.pelvis_apex_difference_cm)}"
-    for i, each in enumerate(report.recorded_overlaps[:MOST_NAMED]):
-        name = "" if i else "Recording"
-        yield (
-            f"{name:<11} has {each.name[0].lower()}{each.name[1:]} by {each.deepest_mm:.0f} mm "
-            f"(frame {each.frame:.0f}), and may keep it"
-        )
-    for i, beyond in enumerate(report.recorded_ranges[:MOST_NAMED]):
-        name = "" if i or report.recorded_overlaps else "Recording"
-        yield (
-            f"{name:<11} {beyond.name[0].lower()}{beyond.name[1:]} {beyond.beyond_deg:.0f}° beyond "
-            f"a person's range (frame {beyond.frame:.0f}), and may do so"
-        )
+    yield from fit_excess_lines(report)
     residuals = report.between_nodes
     for kind, left in ((PhaseKind.FLIGHT, residuals.flight), (PhaseKind.GROUND, residuals.ground)):
         if left is not None:
@@ -236,6 +225,21 @@ def _quality(report: Report) -> Iterator[str]:
             if left.moment_rms_bw_m > LEFT_AT_MOST[kind]:
                 yield "            more than it should be between the solver's nodes: choose fewer"
                 yield "            frames, or correct contacts whose feet slide"
+
+
+def fit_excess_lines(report: Report) -> Iterator[str]:
+    """What the fit has in each other or beyond a person's ranges, as the recording has it or as the
+    fit is off it: the adapted motion may keep it."""
+    for each in report.recorded_overlaps[:MOST_NAMED]:
+        yield (
+            f"            it has {each.name[0].lower()}{each.name[1:]} by {each.deepest_mm:.0f} mm "
+            f"(frame {each.frame:.0f}), which the result may keep"
+        )
+    for beyond in report.recorded_ranges[:MOST_NAMED]:
+        yield (
+            f"            its {beyond.name[0].lower()}{beyond.name[1:]} {beyond.beyond_deg:.0f}° "
+            f"beyond a person's range (frame {beyond.frame:.0f}), which the result may keep"
+        )
 
 
 def _contacts(report: Report) -> Iterator[str]:

@@ -5,8 +5,15 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import pytest
-from hangtime.operators.words.report_text import gravity_lines, higher, moving_ground_lines
+from hangtime.operators.words.report_text import (
+    fit_excess_lines,
+    gravity_lines,
+    higher,
+    moving_ground_lines,
+)
 from hangtime.solver.data.contacts import phase_title
+from hangtime.solver.data.reports.joints import RecordedRange
+from hangtime.solver.data.reports.report import RecordedOverlap
 
 
 @pytest.mark.parametrize(
@@ -35,3 +42,13 @@ def test_the_artists_name_of_a_held_frame_is_told_as_it_was_given(phase: str, sh
     (line,) = moving_ground_lines(SimpleNamespace(moving_ground=(ride,)))
     assert line == f"{shown:<11} is carried on by 0.50 m, with the speed of the ground left"
     assert phase_title(phase) == shown
+
+
+def test_what_is_measured_on_the_fit_is_not_told_of_the_recording() -> None:
+    overlaps = (RecordedOverlap("Right thigh in the floor", 446.0, 39.0),)
+    ranges = (RecordedRange("Left ankle bends", 205.0, 39.0),)
+    made = SimpleNamespace(recorded_overlaps=overlaps, recorded_ranges=ranges)
+    assert [line.strip() for line in fit_excess_lines(made)] == [
+        "it has right thigh in the floor by 446 mm (frame 39), which the result may keep",
+        "its left ankle bends 205° beyond a person's range (frame 39), which the result may keep",
+    ]
