@@ -12,6 +12,7 @@ from ...solver.data.requests import AddedMass
 from ...solver.doctor.finding import Finding
 from ...solver.doctor.repairs import UpAxis
 from .doctor_text import finding_sentence
+from .messages import length
 
 # Body mass over squared stature, kg/m². Adults above 40 have obesity of the third class; of healthy
 # children the leanest have 13 (WHO).
@@ -117,9 +118,18 @@ def _of_build(mass: float, height: float) -> Iterator[str]:
     usual = LEANEST * height**2, HEAVIEST * height**2
     if not usual[0] <= mass <= usual[1]:
         yield (
-            f"{mass:g} kg is a mass that nobody of {height:.2f} m has; people have "
-            f"{usual[0]:.0f} to {usual[1]:.0f} kg. State the performer's mass, or the height"
+            f"{mass:g} kg is a mass that nobody of {length(height)} has; people's build gives "
+            f"{_masses(*usual)}. State the performer's mass, or the height"
         )
+
+
+def _masses(least: float, most: float) -> str:
+    """A range of masses, kg, in the unit that suits it: "17 to 65 kg", "120 to 450 g"."""
+    unit, factor = ("kg", 1.0) if most >= 1.0 else ("g", 1000.0)
+    low, high = (
+        f"{mass:.0f}" if mass >= 10.0 else f"{mass:.2g}" for mass in (factor * least, factor * most)
+    )
+    return f"{low} to {high} {unit}"
 
 
 def _of_loads(problem: MotionProblem) -> Iterator[str]:

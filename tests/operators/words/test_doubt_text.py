@@ -44,6 +44,8 @@ def test_usual_amounts_are_not_asked_about(problem: MotionProblem) -> None:
         (replace(USUAL, frames=(140.0, 9999.0)), "Frame 9999 was asked for"),
         (replace(USUAL, frames=(-50.0, 330.0)), "begins at 140"),
         (replace(USUAL, height=1.2), "70 kg is a mass that nobody of 1.20 m has"),
+        (replace(USUAL, height=0.1), "nobody of 10.0 cm has; people's build gives 120 to 450 g."),
+        (replace(USUAL, height=0.4), "nobody of 40.0 cm has; people's build gives 1.9 to 7.2 kg."),
         (asking(added=(AddedMass("Anvil", "Hand", share=20.0),)), "“Anvil”: 20 times"),
         (asking(added=(AddedMass("Anvil", "Hand", mass=1400.0),)), "“Anvil”: 20 times"),
         (asking(gravity=98.1), "Gravity is 98.1"),
