@@ -25,7 +25,7 @@ from ..frames.exchanges import KINDS, LIMBS, find_exchange
 from ..frames.flips import find_flips
 from ..frames.full_turns import find_full_turns
 from ..frames.holds import find_held, find_repeated
-from ..frames.jumps import find_jumps
+from ..frames.jumps import find_jumps, with_those_left
 from ..frames.missing import find_dropped
 from ..frames.spikes import find_spikes
 from ..lengths import find_lengths
@@ -121,7 +121,7 @@ def diagnose(
         found.append(dropped)  # and not cured: what else is found is told by the frames that are
     jumps = find_jumps(recording, figure)
     if jumps is not None and not _are_at(jumps, _places(found, FindingKind.DROPPED_FRAMES)):
-        found.append(jumps)
+        found.append(with_those_left(jumps, recording, figure))
     told(0.35)
     for find in (find_lengths, find_noise):
         recording = cured(recording, find(recording, figure))

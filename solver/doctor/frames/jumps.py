@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ...arrays import FloatArray
@@ -11,6 +13,7 @@ from ..figure import Figure
 from ..finding import Finding, FindingKind
 from ..local_poses import LocalPoses, runs
 from ..slack import slack
+from ..stretch import longest_stretch
 from .ragged import ragged_ends
 from .steps import around, moved_steps, turned_steps
 
@@ -45,6 +48,19 @@ def find_jumps(recording: Recording, figure: Figure) -> Finding | None:
         (float(recording.frames[a]), float(recording.frames[b + 1])) for a, b in runs(steps)
     )
     return Finding(FindingKind.JUMP, amount, "cm" if places else "°", frames, part)
+
+
+def with_those_left(found: Finding, recording: Recording, figure: Figure) -> Finding:
+    """With the jumps of what is kept without those found: where a clip is cut its new first and
+    last steps are compared with others."""
+    kept = longest_stretch(recording.ends, [found])
+    if kept[1] <= kept[0]:
+        return found
+    left = find_jumps(recording.window(*kept), figure)
+    if left is None:
+        return found
+    every = replace(found, frames=tuple(sorted({*found.frames, *left.frames})))
+    return with_those_left(every, recording, figure)
 
 
 def _jumps(uneven: FloatArray, limit: float) -> list[int]:

@@ -42,6 +42,18 @@ def test_where_takes_were_joined_the_longest_part_is_kept(at, kept) -> None:
     assert [f for f in diagnose(mended).findings if not f.kind.note] == []
 
 
+def test_what_a_cut_leaves_holds_no_jump() -> None:
+    """Beside the longer first step the second one is nothing, until that is left out."""
+    heads = jump().heads.copy()
+    heads[:20, :, 0] -= 0.1
+    heads[:19, :, 0] -= 0.12
+    found = diagnose(replace(jump(), heads=heads))
+    assert [f.kind for f in found.findings if not f.kind.note] == [FindingKind.JUMP]
+    assert found.repairs.trim == 20
+    left = repaired(replace(jump(), heads=heads), found.repairs)
+    assert not [f for f in diagnose(left).findings if not f.kind.note]
+
+
 def test_of_a_clip_that_is_cut_everywhere_no_part_is_worth_keeping() -> None:
     (found,) = (f for f in diagnose(moved_from(*range(30, 250, 30))).findings if not f.kind.note)
     assert found.kind is FindingKind.JUMP
