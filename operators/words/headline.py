@@ -3,7 +3,7 @@ accepted, what failed."""
 
 from collections.abc import Sequence
 
-from ...solver.data.faults import NoFit
+from ...solver.data.faults import NoFit, NoSolution
 from ...solver.data.reports.certificate import CertificateItem, CertificateLine
 from ...solver.data.reports.constraints import AcceptedReport, ConstraintReport, FitNeeds
 from ...solver.data.reports.keys import MissedContact
@@ -53,7 +53,8 @@ def headline(report: Report) -> list[str]:
     if report.fit_failed:
         return [sentence(NoFit(report.status))]
     if report.status is not Status.SOLVED:
-        return [outcome(report.status)]
+        fit = (line.value for line in report.failed if line.item is CertificateItem.FIT_RMS)
+        return [sentence(NoSolution(report.status, fit_off_cm=next(fit, 0.0)))]
     accepted = accepted_lines(report.needs)
     told = [nearness(report.fit_to_recording), *accepted, *lifted_lines(report)]
     told += given_up_lines(report)

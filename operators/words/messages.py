@@ -76,7 +76,8 @@ def _variant(fault: Fault) -> int:
         case faults.UnreadableText():
             return fault.cure.value
         case faults.NoSolution():
-            return (2 if fault.reached else 1) if fault.worst else 0
+            told = (2 if fault.reached else 1) if fault.worst else 0
+            return told + (3 if _begins_far_off(fault) else 0)
         case faults.NothingTouches():
             return bool(fault.touching)
         case faults.JoinedPhase():
@@ -89,6 +90,12 @@ def _variant(fault: Fault) -> int:
         case faults.ChangedMeanwhile() | faults.RateChanged():
             return fault.while_solving
     raise TypeError(f"which words are for {type(fault).__name__}?")
+
+
+def _begins_far_off(fault: faults.NoSolution) -> bool:
+    """Whether the advice is about the fit that the solve begins from."""
+    is_fit, stopped = isinstance(fault, faults.NoFit), fault.reason is Status.STOPPED
+    return fault.fit_off_cm > 0.0 and not is_fit and not stopped
 
 
 class _Formatter(Formatter):

@@ -163,6 +163,16 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
         "{reason:outcome}{damages:damages} Furthest off: {worst:missed}.",
         "{reason:outcome}{damages:damages} The best found goes {reached:percent} of the way; "
         "furthest off: {worst:missed}.",
+        "No motion was found, and the fit that it begins from is {fit_off_cm:.3g} cm off the "
+        "recording (rms). Correct the contacts' frames, or mend the recording, before you ask for "
+        "less.{damages:damages}",
+        "No motion was found, and the fit that it begins from is {fit_off_cm:.3g} cm off the "
+        "recording (rms). Correct the contacts' frames, or mend the recording, before you ask for "
+        "less.{damages:damages} Furthest off: {worst:missed}.",
+        "No motion was found, and the fit that it begins from is {fit_off_cm:.3g} cm off the "
+        "recording (rms). Correct the contacts' frames, or mend the recording, before you ask for "
+        "less.{damages:damages} The best found goes {reached:percent} of the way; furthest off: "
+        "{worst:missed}.",
     ),
     faults.NoFit: (
         "The recording's own contacts cannot be held by a motion that obeys physics."

@@ -27,6 +27,7 @@ from ..data.faults import NoFit, NoSolution, Treadmill, UnseenSupport, computabl
 from ..data.loop import Cycle
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack, Recording
+from ..data.reports.certificate import CertificateItem
 from ..data.reports.jumps import TimeMap
 from ..data.reports.recording import Origin
 from ..data.reports.report import Report, StageReport
@@ -48,9 +49,10 @@ from ..fitting.fit import Fit
 from ..loops.find_cycle import check_loop, find_cycle
 from ..loops.loop_report import loop_report
 from ..optimisation.sqp import Step
+from ..results.certificate import LIMITS
 from ..results.joint_report import joint_turns
 from ..results.last_stance import last_stance_move
-from ..results.report import report, time_map
+from ..results.report import fit_quality, report, time_map
 from ..results.trace_sampling import motion_traces, recorded_traces
 from ..results.violations import most_telling
 from ..scene.checks import check_scene
@@ -306,7 +308,8 @@ def adapt_fit(subject: Subject, fitted: Fit, clock: StageClock) -> AdaptationRes
     if adaptation.solved:
         return AdaptationResult(subject, adaptation, None)
     fault = _unsolved(NoSolution, adaptation, subject.problem)
-    return AdaptationResult(subject, adaptation, _explained(fault, subject))
+    fault = replace(_explained(fault, subject), fit_off_cm=_too_far_off(fitted))
+    return AdaptationResult(subject, adaptation, fault)
 
 
 def on_fit(subject: Subject, fitted: Fit) -> Subject:
@@ -371,6 +374,12 @@ def _explained(fault: NoSolution, subject: Subject) -> NoSolution:
         return fault
     recording = scaled_recording(subject.recording, 1.0 / subject.factor)
     return replace(fault, damages=damages_of(recording, subject.problem))
+
+
+def _too_far_off(fitted: Fit) -> float:
+    """Cm, rms, that a fit is off its recording; 0 where that is within the certificate's limit."""
+    off = fit_quality(fitted).joint_centres_rms_cm
+    return off if off > LIMITS[CertificateItem.FIT_RMS][0] else 0.0
 
 
 def _sound(failed: Fit) -> tuple[int, int] | None:

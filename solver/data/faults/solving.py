@@ -68,13 +68,15 @@ class NoSolution(Fault):
     """The solver ended without meeting every constraint; worst first.
 
     reached: the share of the way that the best motion found goes. damages: of the recording, which
-    may be the cause.
+    may be the cause. fit_off_cm: how far, rms, the fit is off the recording where that is too far
+    to begin from; 0 where it is near.
     """
 
     reason: Status
     worst: tuple[Violation, ...] = ()
     reached: float = 0.0
     damages: tuple[Damage, ...] = ()
+    fit_off_cm: float = 0.0
 
 
 @dataclass

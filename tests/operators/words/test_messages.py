@@ -140,6 +140,14 @@ def test_a_failed_solve_names_what_is_off() -> None:
     assert "in flight 1" in sentence(fault)
 
 
+def test_a_solve_that_begins_from_a_far_fit_points_there_and_not_to_what_was_asked() -> None:
+    near, far = (sentence(NoSolution(Status.NO_BODY, fit_off_cm=cm)) for cm in (0.0, 26.5))
+    assert near == OUTCOMES[Status.NO_BODY]
+    assert "the fit that it begins from is 26.5 cm off the recording (rms). Correct the" in far
+    stopped = NoSolution(Status.STOPPED, fit_off_cm=26.5)
+    assert sentence(stopped) == OUTCOMES[Status.STOPPED]
+
+
 def test_a_failed_solve_names_what_is_wrong_with_the_recording_and_what_mends_it() -> None:
     """A shank that grows by 5 %, unrepaired."""
     clip = stretched(0.05).of(load_recording(JUMP)).recording
