@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from ..data.contacts import (
     ContactSchedule,
     ContactThresholds,
     Interval,
+    PointKind,
     gaps,
     numbered,
 )
@@ -38,6 +40,9 @@ FALL_RESIDUAL = 0.03  # m, rms; a centre of mass further from every parabola is 
 # m/s² and m, rms: by which recorded flights of 0.1 s and more are off gravity and a parabola; a
 # dance whose floor drifts has falls that are 2.2 and 0.006 off, and are none
 CLEAR_FALL, CLEAR_RESIDUAL = 2.0, 0.003
+MAX_BREAK = 0.12  # s; a foot cannot leave its place and come back in less
+BREAK_WINDOW = 0.2  # s, on either side of a break, over which a place is the mean
+FARTHER = 1.5  # times what feet move by alike, as the turns of each leg are noisy, too
 COM_NOISE = 0.001  # m, from frame to frame, of a recorded centre of mass
 STANDARD_ERRORS = 3.0  # of a fitted acceleration, before it speaks against a free fall
 
@@ -72,6 +77,8 @@ def detect_contacts(
         for name, point in points.items()
         for touch in _touches(clock, name, point, movements[name], ground or level(floor_m))
     ]
+    feet = {name: movements[name] for name, p in points.items() if p.kind is not PointKind.HAND}
+    touches = _joined_over_noise(clock, touches, feet, ground or level(floor_m))
     for carrier in carriers:
         touches += _carried(times, clock, points, carrier)
     touches = _on_one_thing(touches) if carriers else touches
@@ -149,6 +156,82 @@ def _touches(
             yield Contact(
                 name, name, point.bone, point.offset, candidate.start, candidate.end, place
             )
+
+
+@dataclass(frozen=True)
+class _Break:
+    """Of the contact of a foot that stays low. after: the touch that goes on. moved: (2,) m, level,
+    of its point meanwhile. alike: whether the other foot stays low, too, and moves with it."""
+
+    after: Contact
+    moved: FloatArray
+    alike: bool
+
+
+def _joined_over_noise(
+    clock: FloatArray,
+    touches: Sequence[Contact],
+    feet: Mapping[str, PointMovement],
+    ground: Heights,
+) -> list[Contact]:
+    """The touches, those of a foot's point that noise parts as one. clock: (N,) s, of the feet.
+
+    Video capture errs in the body's place by centimetres, to and fro within tenths of a second, and
+    feet that stand seem to step. But they move alike then, which feet that step do not, and once
+    the other way, which feet that slide do not. So far, noise may have moved one that stands alone.
+    """
+    breaks = list(_breaks(clock, touches, feet, ground))
+    shifts = np.array([b.moved for b in breaks if b.alike]).reshape(-1, 2)
+    if not (shifts @ shifts.T < 0.0).any():
+        return list(touches)
+    farthest = np.linalg.norm(shifts, axis=1).max()
+    parted = {id(b.after) for b in breaks if np.linalg.norm(b.moved) <= FARTHER * farthest}
+    joined: list[Contact] = []
+    for touch in sorted(touches, key=lambda t: (t.point, t.start)):
+        if id(touch) not in parted:
+            joined.append(touch)
+            continue
+        before = joined[-1]
+        end = max(before.end, touch.end)
+        during = (clock >= before.start) & (clock <= end)
+        place = np.median(feet[touch.point].point[during], axis=0)
+        joined[-1] = replace(before, end=end, place=place)
+    return joined
+
+
+def _breaks(
+    clock: FloatArray,
+    touches: Iterable[Contact],
+    feet: Mapping[str, PointMovement],
+    ground: Heights,
+) -> Iterable[_Break]:
+    """Where a foot's point touches again sooner than a foot can, and its foot stays low."""
+    for one, other in pairwise(sorted(touches, key=lambda t: (t.point, t.start))):
+        if one.point != other.point or other.start - one.end >= MAX_BREAK or one.point not in feet:
+            continue
+        before = (clock > one.end - BREAK_WINDOW) & (clock <= one.end)
+        after = (clock >= other.start) & (clock < other.start + BREAK_WINDOW)
+        moved = {
+            name: (foot.track[after].mean(axis=0) - foot.track[before].mean(axis=0))[:2]
+            for name, foot in feet.items()
+        }
+        side = one.point.split()[0]
+        own = [name for name in feet if name.split()[0] == side]
+        across = [name for name in feet if name not in own]
+        near = (np.linalg.norm(moved[name] - moved[one.point]) for name in across)
+        between = (clock >= min(one.end, other.start)) & (clock <= max(one.end, other.start))
+        if _low([feet[name] for name in own], clock, between, ground):
+            alike = bool(min(near, default=np.inf) < MAX_SLIDE)
+            beside = _low([feet[name] for name in across], clock, before | between | after, ground)
+            yield _Break(other, moved[one.point], alike and beside)
+
+
+def _low(
+    foot: Iterable[PointMovement], clock: FloatArray, during: BoolArray, ground: Heights
+) -> bool:
+    """Whether some point of a foot is as low as a toe that touches, at each of some instants."""
+    heights = [f.track[during, 2] - ground(clock, f.track)[during] for f in foot]
+    return bool(heights) and bool((np.min(heights, axis=0) < PointKind.TOE.value.max_height).all())
 
 
 def _carried(

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from ...analysis.analyse import skids_in
+from ...analysis.contact_detection import MAX_BREAK
 from ...analysis.performance import Performance, contact_points, find_contacts
 from ...arrays import FloatArray
 from ...data.contacts import ContactSchedule, Interval, PointKind
@@ -42,7 +43,6 @@ ALIKE_RISE = 0.5  # of the rise, likewise
 STEADY = 0.5  # of the speed, by which those of half a clip may differ
 LEVELLED = 0.5  # of how much their heights differ, that is left without the rise
 SUNK = 0.06  # m below the floor; honest soles go 5 cm below the lowest of uneven ones
-FLICKER_GAP = 0.12  # s; a foot cannot leave its place and come back in less
 FLICKER_PLACE = 0.03  # m
 FLICKERS = 3
 
@@ -233,7 +233,7 @@ def _flicker(performance: Performance, schedule: ContactSchedule) -> Finding | N
         own = [c for c in schedule.contacts if c.point == point]
         for one, other in pairwise(sorted(own, key=lambda c: c.start)):
             same = np.linalg.norm((other.place - one.place)[:2]) < FLICKER_PLACE
-            if same and other.start - one.end < FLICKER_GAP:
+            if same and other.start - one.end < MAX_BREAK:
                 breaks.append((Interval(one.end, other.start), point))
     if len(breaks) < FLICKERS:
         return None
