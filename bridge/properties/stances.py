@@ -99,7 +99,8 @@ def join(settings: Settings, row: ContactRow, metre: float) -> None:
     """Takes a contact that is added where it was recorded to where its stance stands, and on what
     the nearest one of that does: with the whole stance's move, else, where contacts were moved one
     by one, with the nearest one's. metre: in Blender units."""
-    found = [each for each in stance_contacts(settings, row.phase) if not each.added]
+    others = [each for each in stance_contacts(settings, row.phase) if each != row]
+    found = telling(others)
     stance = settings.stances.get(row.phase)
     if stance is None or not found:
         return

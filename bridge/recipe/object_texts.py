@@ -37,11 +37,13 @@ def mesh_files(scene: Sequence[SceneObject]) -> dict[str, str]:
 
 def support_texts(boxes: Sequence[SupportBox]) -> list[str]:
     """The tables of boxes that would carry what nothing in sight does."""
-    return [_support_text(support_name(i), box) for i, box in enumerate(boxes)]
+    stands = any(abs(box.top) <= TOP_OFF for box in boxes)
+    return [_support_text(support_name(i), box, stands=stands) for i, box in enumerate(boxes)]
 
 
-def _support_text(name: str, box: SupportBox) -> str:
-    """With a comment of where it goes if the recording is put on the floor, as is advised."""
+def _support_text(name: str, box: SupportBox, *, stands: bool) -> str:
+    """With a comment of where it goes if the recording is put on the floor, as is advised unless
+    it stands at 0 on one of the boxes."""
     values = {
         "name": name,
         "role": SceneRole.GROUND.value,
@@ -51,7 +53,7 @@ def _support_text(name: str, box: SupportBox) -> str:
     }
     text = f"[[{HEADER}]]\n{entries(values)}"
     x, y, floor = _rounded(box.place)
-    if abs(floor) <= FLOOR_OFF or abs(box.top) <= TOP_OFF:
+    if stands or abs(floor) <= FLOOR_OFF:
         return text
     way = "lowered" if floor > 0.0 else "raised"
     moved = f"{way} by {abs(floor):g} m, by “floor” under [recording]"

@@ -4,13 +4,14 @@ out of it; the recording stays."""
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 
 import bpy
 import numpy as np
 
-from ...solver.data.faults import NotBetweenFrames, NotPutIn
+from ...solver.data.faults import NotPutIn
 from ...solver.doctor.local_poses import lagrange
-from ...solver.doctor.repairs import MissingFrames
+from ...solver.doctor.repairs import MissingFrames, check_missing, filled_frame, recorded_frame
 from ..accessors import assigned_action, current_scene, play_to_end, source_of
 from ..action_slots import alone, span_of
 from ..armature import fcurves
@@ -19,7 +20,7 @@ from ..fake_users import free_copy, guard, unguard
 from ..played_strips import played_strip
 from ..properties.settings import action_settings, settings_of
 from ..takes.takes import results_from
-from .stored import FRAMES, findings
+from .stored import FRAMES, findings, repairs_in
 
 NAME = "{} filled"
 _SUPPORT = np.array([-1, 0, 1, 2])  # keys about a gap, from the one before it on
@@ -44,9 +45,7 @@ def put_in(
     if recorded is None:
         recorded, before = shown, ()
     first, last = span_of(recorded)
-    for gap in missing:
-        if not first <= gap.after < last:
-            raise NotBetweenFrames(gap.after, first, last)
+    check_missing(missing, first, last)
     made = _copied(armature, recorded, missing) if missing else recorded
     end = span_of(shown)[1]
     show(armature, made)
@@ -56,14 +55,20 @@ def put_in(
         if made == recorded and not results_from(recorded):
             unguard(recorded)
 
-    def now(frame: float) -> int:
-        return round(_filled(_recorded(frame, before), missing))
-
     settings = settings_of(armature)
-    settings.first_frame = now(settings.first_frame)
-    settings.last_frame = now(settings.last_frame)
+    settings.first_frame = _now(settings.first_frame, before, missing)
+    settings.last_frame = _now(settings.last_frame, before, missing)
     for row in findings(settings):
-        row.frames = json.dumps([tuple(map(now, span)) for span in FRAMES.of(row.frames)])
+        # What a row's own remedy takes out it tells as it was, to be shown once more.
+        own = [gap for gap in repairs_in(row.remedy).missing if gap.count < 0]
+        was, will = ([gap for gap in each if gap not in own] for each in (before, missing))
+        spans = [[_now(frame, was, will) for frame in span] for span in FRAMES.of(row.frames)]
+        row.frames = json.dumps(spans)
+
+
+def _now(frame: float, before: Sequence[MissingFrames], missing: Sequence[MissingFrames]) -> int:
+    """Where a frame of the take that was filled before is in the one that is filled now."""
+    return round(filled_frame(recorded_frame(frame, before), missing))
 
 
 def _copied(
@@ -75,10 +80,10 @@ def _copied(
     guard(recorded)
     action_settings(made).unfilled = recorded
     if made.use_frame_range:
-        made.frame_start = _filled(made.frame_start, missing)
-        made.frame_end = _filled(made.frame_end, missing)
+        made.frame_start = filled_frame(made.frame_start, missing)
+        made.frame_end = filled_frame(made.frame_end, missing)
     for marker in made.pose_markers:
-        marker.frame = round(_filled(marker.frame, missing))
+        marker.frame = round(filled_frame(marker.frame, missing))
     curves = fcurves.holder_in(made, fcurves.slot_identifier(armature))
     if curves is not None:
         fcurves.align_quaternions(curves.fcurves)
@@ -102,13 +107,13 @@ def _put_into(curve: bpy.types.FCurve, missing: tuple[MissingFrames, ...]) -> No
         around = values[near]
         if "rotation_euler" in curve.data_path:
             around = np.unwrap(around)
-        sound = np.array([_filled(at[k], missing) for k in near], int)
-        first = int(_filled(gap.after, missing)) + 1
+        sound = np.array([filled_frame(at[k], missing) for k in near], int)
+        first = int(filled_frame(gap.after, missing)) + 1
         for frame in range(first, first + gap.count):
             used, weights = lagrange(sound, frame)
             added.append(float(weights @ around[np.searchsorted(sound, used)]))
             frames.append(frame)
-    moved = np.array([_filled(frame, missing) for frame in at])
+    moved = np.array([filled_frame(frame, missing) for frame in at])
     for name in ("co", "handle_left", "handle_right"):
         keys[name][:, 0] += moved - at
     stay = np.diff(moved, prepend=-np.inf) > 0.0
@@ -116,16 +121,3 @@ def _put_into(curve: bpy.types.FCurve, missing: tuple[MissingFrames, ...]) -> No
     more = fcurves.linear_keys(keys, np.array(frames), np.array(added))
     fcurves.put(curve, fcurves.joined(keys, more))
     curve.update()
-
-
-def _filled(frame: float, missing: tuple[MissingFrames, ...]) -> float:
-    """Where a recorded frame goes; one that is taken out to the pose that it repeats."""
-    return frame + sum(max(gap.count, gap.after - frame) for gap in missing if frame > gap.after)
-
-
-def _recorded(frame: float, missing: tuple[MissingFrames, ...]) -> float:
-    """The recorded frame of one of the filled take; of those put in the next."""
-    for gap in missing:
-        if frame > gap.after:
-            frame = max(gap.after + 1, frame - gap.count)
-    return frame

@@ -12,7 +12,7 @@ import bpy
 from ...solver.data.problem import Mend
 from ...solver.doctor.examination.diagnose import Diagnosis
 from ...solver.doctor.finding import Finding, FindingKind
-from ...solver.doctor.repairs import MOST_MISSING, MissingFrames, Repairs, UpAxis
+from ...solver.doctor.repairs import MOST_MISSING, MissingFrames, Repairs, UpAxis, recorded_frame
 from ...solver.doctor.stance.feet import FootFault, FootFaultKind
 from ...solver.doctor.stretch import CUTTING, Span, belonging, is_clear
 from ..accessors import current_scene, source_of
@@ -56,10 +56,16 @@ def _read_repairs(content: Any) -> Repairs:
 
 
 def _missing(content: Any) -> tuple[MissingFrames, ...]:
-    gaps = [MissingFrames(int(number(after)), whole(n)) for after, n in listed(content)]
+    gaps = [MissingFrames(int(number(after)), _count(n)) for after, n in listed(content)]
     if not all(1 <= abs(gap.count) <= MOST_MISSING for gap in gaps):
         raise ValueError(content)
     return tuple(gaps)
+
+
+def _count(content: Any) -> int:
+    """Of frames that are missing, or, below 0, too many."""
+    less = isinstance(content, int) and content < 0
+    return -whole(-content) if less else whole(content)
 
 
 def _factor(content: Any) -> float:
@@ -122,7 +128,11 @@ def write_diagnosis(
     """Keeps what was found, and of what. Findings whose remedy counts stay, found again or not."""
     settings = settings_of(armature)
     kept = [(finding_of(row), row.mass) for row in findings(settings) if is_applied(settings, row)]
-    found = [_told(armature, finding, diagnosis.mass or 0.0) for finding in diagnosis.findings]
+    missing = repairs_in(settings.repairs).missing
+    found = [
+        _told(armature, _of_recorded(finding, missing), diagnosis.mass or 0.0)
+        for finding in diagnosis.findings
+    ]
     kinds = [finding.kind for finding, _ in found]
     found = [each for each in kept if each[0].kind not in kinds] + found
     rows = resized(settings.findings, len(found))
@@ -135,6 +145,15 @@ def write_diagnosis(
     settings.examination_stale = False
     told = [(f.kind.value, *astuple(f)[1:]) for f in feet]
     settings.feet = json.dumps([settings.repairs, told]) if told else ""
+
+
+def _of_recorded(finding: Finding, missing: tuple[MissingFrames, ...]) -> Finding:
+    """With a remedy whose frames are those of the recording, as it is without what is put in."""
+    remedy = finding.remedy
+    if remedy is None or not (missing and remedy.missing):
+        return finding
+    gaps = (replace(gap, after=round(recorded_frame(gap.after, missing))) for gap in remedy.missing)
+    return replace(finding, remedy=replace(remedy, missing=tuple(gaps)))
 
 
 def _told(armature: bpy.types.Object, finding: Finding, mass: float) -> tuple[Finding, float]:

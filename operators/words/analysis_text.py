@@ -142,8 +142,7 @@ def _bones(problem: MotionProblem) -> list[str]:
 
 def _first_landing(analysis: Analysis) -> Phase | None:
     """The first stance after a flight, or the first of all; None where nothing touches."""
-    phases = analysis.schedule.phases
-    ground = [p for p in phases if p.kind is PhaseKind.GROUND]
+    phases, ground = analysis.schedule.phases, analysis.schedule.stances
     flown = next((p.end for p in phases if p.kind is PhaseKind.FLIGHT), 0.0)
     return next((p for p in ground if p.start >= flown - 1e-9), ground[0] if ground else None)
 

@@ -92,11 +92,10 @@ def _landed(
 
 def phase_of(pin: Pin, schedule: ContactSchedule) -> Phase:
     """The ground phase that a pin names, in which something touches. Raises UnknownPhase."""
-    ground = [p for p in schedule.phases if p.kind is PhaseKind.GROUND and schedule.of_phase(p)]
-    for phase in ground:
+    for phase in schedule.stances:
         if phase.name == pin.phase:
             return phase
-    raise UnknownPhase(pin.name, pin.phase, tuple(p.name for p in ground))
+    raise UnknownPhase(pin.name, pin.phase, tuple(p.name for p in schedule.stances))
 
 
 def chosen_contacts(pin: Pin, phase: Phase, schedule: ContactSchedule) -> list[int]:

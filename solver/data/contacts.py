@@ -188,6 +188,12 @@ class ContactSchedule:
         return tuple(sorted(named, key=lambda p: p.start))
 
     @property
+    def stances(self) -> tuple[Phase, ...]:
+        """The phases on the ground in which something touches."""
+        ground = (phase for phase in self.phases if phase.kind is PhaseKind.GROUND)
+        return tuple(phase for phase in ground if self.of_phase(phase))
+
+    @property
     def boundaries(self) -> tuple[float, ...]:
         """Phase boundaries, s, ascending: the clip's ends and every start and end of a contact."""
         ends = {0.0, self.duration}

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from enum import Enum
 
+from ..data.faults import NotBetweenFrames
 from ..data.problem import Mend
 
 MOST_MISSING = 1000  # frames in one place; what lies between seconds apart is anybody's guess
@@ -28,6 +30,26 @@ class MissingFrames:
 
     after: int
     count: int
+
+
+def check_missing(missing: Sequence[MissingFrames], first: float, last: float) -> None:
+    """Whether all are amid a recording's frames. Raises NotBetweenFrames."""
+    for gap in missing:
+        if not first <= gap.after <= gap.after - min(gap.count, 0) < last:
+            raise NotBetweenFrames(gap.after, first, last)
+
+
+def filled_frame(frame: float, missing: Sequence[MissingFrames]) -> float:
+    """Where a recorded frame goes; one that is taken out to the pose that it repeats."""
+    return frame + sum(max(gap.count, gap.after - frame) for gap in missing if frame > gap.after)
+
+
+def recorded_frame(frame: float, missing: Sequence[MissingFrames]) -> float:
+    """The recorded frame of one of the filled take; of those put in the next."""
+    for gap in missing:
+        if frame > gap.after:
+            frame = max(gap.after + 1, frame - gap.count)
+    return frame
 
 
 @dataclass(frozen=True)

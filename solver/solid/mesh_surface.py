@@ -17,7 +17,7 @@ from .surfaces import WORLD, Closest, Placed, axes_in
 SAMPLING = 0.06  # m along an axis, between the points from which its deepest is sought
 SHALLOWER = 1e-9  # m, by which the point that is found may be less deep than the deepest
 MOST_CUTS = 10
-OPPOSITE = -0.5  # the cosine beyond which two normals are two ways out
+OPPOSITE = -0.5  # the cosine beyond which two ways out go to different sides
 
 
 def scene_shapes(
@@ -107,7 +107,7 @@ def deepest(mesh: TriangleMesh, start: FloatArray, end: FloatArray) -> Deepest:
         return np.stack([share, found.distance, slope, *found.normal.T])
 
     cuts = cut(np.repeat(every, len(samples)), np.tile(samples, len(start)))
-    cuts = cuts.reshape(-1, len(start), len(samples))
+    cuts = cuts.reshape(len(cuts), len(start), len(samples))
     least = cuts[1].argmin(axis=1)
     best = cuts[:, every, least]
     beside = np.clip(np.where(best[2] > 0.0, least - 1, least + 1), 0, len(samples) - 1)

@@ -15,12 +15,11 @@ from ..arrays import BoolArray, FloatArray, IntArray
 from ..body.character import Character
 from ..data.constants import UP
 from ..transcription.motion import Motion
-from .mesh_surface import MeshSurface
+from .mesh_surface import OPPOSITE, MeshSurface
 from .penetrations import MOST_NEW, SPACING, Penetrations, placed_at
 from .surfaces import Surface, Surfaces
 from .way_out import WayOut, as_way
 
-OPPOSITE = -0.5  # the cosine beyond which two ways out go to different sides
 ALIKE = 2  # decimals of two ways out that count as one
 TORN = 0.05  # m deep at a first or last instant: beside an edge of an open mesh; 12 m/s are less
 AROUND = 0.1  # s, before and after, in which a way out must be none of the way itself

@@ -9,7 +9,6 @@ from functools import partial
 from ..analysis.performance import perform
 from ..analysis.pinned_places import travel_axes
 from ..body.character import build_character
-from ..data.contacts import PhaseKind
 from ..data.faults import Fault, computable
 from ..data.problem import MotionProblem
 from ..data.recording import Recording, digest
@@ -229,12 +228,11 @@ class _Watch(StageClock):
 
 def _analysed(request: int, subject: Subject) -> Analysed:
     schedule, performance = subject.analysis.schedule, subject.analysis.performance
-    ground = [p for p in schedule.phases if p.kind is PhaseKind.GROUND]
     return Analysed(
         request,
         subject.schedule,
         subject.height,
-        {p.name: travel_axes(performance, schedule, p) for p in ground},
+        {p.name: travel_axes(performance, schedule, p) for p in schedule.stances},
         {body.name: body.bone for body in performance.character.bodies},
         subject.recorded_traces(),
         subject.fleshed,

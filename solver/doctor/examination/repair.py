@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...arrays import FloatArray
-from ...data.faults import NotBetweenFrames, NothingLeft
+from ...data.faults import NothingLeft
 from ...data.problem import Mend, MotionProblem
 from ...data.recording import Recording, Skin
 from ...data.scaling import scaled_recording
@@ -23,7 +23,7 @@ from ..frames.spikes import unsound_spikes
 from ..lengths import kept_lengths
 from ..local_poses import LocalPoses
 from ..noise import smoothed
-from ..repairs import MissingFrames, Repairs
+from ..repairs import MissingFrames, Repairs, check_missing
 from ..stance.floating import held_to_the_ground
 from ..upright import turn_upright
 
@@ -135,9 +135,7 @@ def filled(recording: Recording, missing: tuple[MissingFrames, ...]) -> Recordin
     if not missing:
         return recording
     first, last = recording.ends
-    for gap in missing:
-        if not first <= gap.after < last:
-            raise NotBetweenFrames(gap.after, first, last)
+    check_missing(missing, first, last)
     kept, lacks = taken_out(recording, missing), [gap for gap in missing if gap.count > 0]
     counts = [sum(gap.count for gap in lacks if gap.after < frame) for frame in kept.frames]
     at = np.arange(len(kept.frames)) + np.array(counts)  # where each recorded frame goes
@@ -195,9 +193,10 @@ def left_after(
 def mended(
     recording: Recording, repairs: Repairs, chosen: Mapping[str, str] | None = None
 ) -> Recording:
-    """With its poses mended; frames, clock and lengths stay, and so does how it floats. Raises
-    MissingPart."""
-    poses = [mend for mend in Mend if mend in repairs.mend and mend is not Mend.FLOATING]
+    """With its poses mended; frames, clock and lengths stay, and so does how it floats; a single
+    pose as it is. Raises MissingPart."""
+    wanted = repairs.mend if len(recording.frames) > 1 else ()
+    poses = [mend for mend in Mend if mend in wanted and mend is not Mend.FLOATING]
     figure = figure_of(recording, chosen) if poses else None
     for mend in poses:
         assert figure is not None

@@ -39,10 +39,18 @@ from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis
 from hangtime.solver.doctor.stance.feet import FootFaultKind
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.blender.helpers.solids import add_row
-from hangtime.tests.helpers.clips import JUMP, JUMP_FRAMES, begun_at_rest, mocap_path
+from hangtime.tests.helpers.clips import (
+    JUMP,
+    JUMP_FRAMES,
+    begun_at_rest,
+    mocap_path,
+    with_frames_repeated,
+    without_frames,
+)
 
 SPIKED, TURN, RAISED, SLOWED = 150, 0.8, 0.2, 1.25
 GAP, LACKS = 150, 4  # frames are missing after one
+HELD, EXTRA, LATER = 195, 36, 250  # a frame that is held for so many more, and a gap after it
 JOINED = 240
 
 pytestmark = pytest.mark.usefixtures("_enabled")
@@ -212,6 +220,31 @@ def test_missing_frames_are_put_into_a_copy(jump, request) -> None:
     assert list(bpy.data.actions) == [recorded]
     assert settings.last_frame == 326
     assert applied(settings) == Repairs()
+
+
+@pytest.mark.slow
+def test_frames_that_are_too_many_are_taken_out_and_later_ones_put_in(tmp_path: Path) -> None:
+    """Remedies count in the recording's frames, whichever are out already."""
+    held = with_frames_repeated(mocap_path(JUMP), HELD, EXTRA, tmp_path)
+    take = import_clip(without_frames(held, LATER, LACKS, tmp_path)).armature
+    settings, recorded = take.hangtime, take.animation_data.action
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    told = finding_of(settings.findings["repeated frames"])
+    assert told.remedy == Repairs(missing=(MissingFrames(HELD, -EXTRA),))
+    assert bpy.ops.hangtime.repair(kind="repeated frames") == {"FINISHED"}
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    assert bpy.ops.hangtime.repair(kind="dropped frames") == {"FINISHED"}
+    assert applied(settings).missing == (MissingFrames(HELD, -EXTRA), MissingFrames(LATER, LACKS))
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    assert {row.name for row in findings(settings) if not is_applied(settings, row)} == set()
+    mended = read_recorded(take, *JUMP_FRAMES)
+    whole = read_recorded(import_clip(mocap_path(JUMP)).armature, *JUMP_FRAMES)
+    assert np.abs(mended.heads - whole.heads).max() < 5e-3
+    bpy.context.view_layer.objects.active = take
+    for kind in ("dropped frames", "repeated frames"):
+        assert bpy.ops.hangtime.repair(kind=kind) == {"FINISHED"}
+    assert take.animation_data.action == recorded
+    assert finding_of(settings.findings["repeated frames"]) == told
 
 
 def test_frames_left_out_again_leave_a_recording_its_fake_user_while_a_result_lives(

@@ -4,12 +4,10 @@ import numpy as np
 import pytest
 from hangtime.devtools.doctor.damages import ended_at_rest, noisy, rising, sliding
 from hangtime.devtools.doctor.measure import apart
-from hangtime.solver.data.faults import (
-    NothingLeft,
-)
+from hangtime.solver.data.faults import NotBetweenFrames, NothingLeft
 from hangtime.solver.data.problem import Mend, MotionProblem
-from hangtime.solver.doctor.examination.repair import as_asked, repaired
-from hangtime.solver.doctor.repairs import Repairs
+from hangtime.solver.doctor.examination.repair import as_asked, mended, repaired
+from hangtime.solver.doctor.repairs import MissingFrames, Repairs
 from hangtime.tests.helpers.doctored import jump
 
 
@@ -20,6 +18,19 @@ def test_leaving_out_every_frame_is_refused(more: int) -> None:
     with pytest.raises(NothingLeft) as told:
         repaired(jump(), Repairs(trim=frames + more))
     assert told.value.frames == frames
+
+
+def test_frames_beyond_the_last_cannot_be_too_many() -> None:
+    first, last = map(int, jump().ends)
+    most = Repairs(missing=(MissingFrames(first, 1 - (last - first)),))
+    assert len(repaired(jump(), most).frames) == 2
+    with pytest.raises(NotBetweenFrames):
+        repaired(jump(), Repairs(missing=(MissingFrames(first, first - last),)))
+
+
+def test_a_single_pose_is_left_as_it_is() -> None:
+    pose = jump().part(slice(0, 1))
+    assert mended(pose, Repairs(mend=tuple(Mend))) is pose
 
 
 def test_drift_is_taken_out_from_the_first_frame_that_is_asked_for_on() -> None:

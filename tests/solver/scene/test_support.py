@@ -1,14 +1,18 @@
 """Support that the floor does not explain: boxes that would, and ground of the scene that does."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hangtime.bridge.recipe.object_texts import support_texts
 from hangtime.bridge.recipe.problem import parse_recipe
+from hangtime.operators.words.analysis_text import starter_recipe
 from hangtime.solver.analysis.analyse import Analysis, analyse
 from hangtime.solver.analysis.grounding import PLACE_BAND
+from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.contacts import PhaseKind
 from hangtime.solver.data.faults import UnseenSupport
 from hangtime.solver.data.problem import ContactEdit, MotionProblem, Unseen
@@ -29,11 +33,16 @@ DROP = 0.3  # m
 @cache
 def drop() -> Recording:
     """The hop as a jump down: raised until it leaves, and in the flight no more bit by bit."""
+    return raised(lambda share: 1.0 - share)
+
+
+def raised(how: Callable[[FloatArray], FloatArray]) -> Recording:
+    """The hop, by so many times DROP higher, by the share (T,) of its flight that is over."""
     recording = load_recording(HOP_CLIP).window(*frames_of(HOP_CLIP, HOP))
     (flight,) = (p for p in hop().schedule.phases if p.kind is PhaseKind.FLIGHT)
     share = np.clip((recording.times - flight.start) / (flight.end - flight.start), 0.0, 1.0)
     heads = recording.heads.copy()
-    heads[..., 2] += DROP * (1.0 - share[:, None])
+    heads[..., 2] += DROP * how(share)[:, None]
     return replace(recording, heads=heads)
 
 
@@ -98,6 +107,24 @@ def test_the_flight_off_a_box_that_is_not_there_is_a_flight() -> None:
         assert (one.start, one.end) == pytest.approx((other.start, other.end), abs=0.02)
     (unseen,) = without.unseen
     assert (unseen.start, unseen.end) == (0.0, without.flights[0].start)
+
+
+def test_a_recipe_to_start_from_pins_a_stance_in_which_something_touches() -> None:
+    """Who jumps onto something unseen lands where no contact is."""
+    analysis = measure(raised(lambda share: share), MotionProblem()).analysis
+    assert [phase.name for phase in analysis.schedule.stances] == ["ground 1"]
+    text = starter_recipe(analysis, MotionProblem(), Path("clip.bvh"), Path("recipe.toml"))
+    (pin,) = parse_recipe(text).problem.pins
+    assert pin.phase == "ground 1"
+
+
+def test_where_the_recording_stands_on_one_of_two_boxes_neither_is_said_to_be_moved() -> None:
+    (box,) = offered()
+    low = replace(box, place=(*box.place[:2], -box.size[2]))
+    assert "with the recording" not in "".join(support_texts([low, replace(low, turn=1.0)]))
+    other = replace(low, size=(*low.size[:2], low.size[2] + 0.3))
+    assert "with the recording" not in "".join(support_texts([low, other]))
+    assert "with the recording" in "".join(support_texts([other]))
 
 
 def test_it_stays_one_where_the_landing_is_corrected() -> None:

@@ -127,3 +127,4 @@ def test_the_deepest_point_of_an_axis_is_found(mesh: Triangles) -> None:
     assert (found.distance - least).max() < SHALLOWER
     at = start + found.share[:, None] * (end - start)
     np.testing.assert_allclose(solid.distances(at).distance, found.distance, atol=1e-12)
+    assert deepest(solid, start[:0], end[:0]).gradient.shape == (0, 3)

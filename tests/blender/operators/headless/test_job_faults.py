@@ -19,7 +19,7 @@ from hangtime.tests.blender.helpers.jobs import EDIT, PLAIN, run
 def one_line(capsys) -> str:
     """What was said on the standard error: one line, no traceback."""
     said = capsys.readouterr().err
-    assert said.count("\n") == 1
+    assert said.count("\n") == 1, said
     assert "Traceback" not in said
     return said
 

@@ -84,7 +84,6 @@ def test_a_place_that_is_no_number_is_refused_and_put_back(
         bpy.ops.hangtime.adapt()
 
 
-@pytest.mark.slow
 def add_to_landing(settings: bpy.types.PropertyGroup, point: str) -> bpy.types.PropertyGroup:
     bpy.context.scene.frame_set(round(landing(settings)[0].start_frame) + 2)
     assert bpy.ops.hangtime.add_contact(point=point) == {"FINISHED"}
@@ -116,6 +115,20 @@ def test_a_contact_that_is_added_goes_where_its_stance_was_moved_and_turned(
     np.testing.assert_allclose(stance.shifted, np.add(was[:3], (0.0, 0.1, 0.1)), atol=1e-5)
 
 
+def test_a_contact_goes_where_those_went_that_the_artist_made_the_stance_of(
+    analysed: bpy.types.Object,
+) -> None:
+    settings = analysed.hangtime
+    add_to_landing(settings, "Left hand")
+    for name in [row.name for row in landing(settings) if not row.added]:
+        settings.contacts.remove(settings.contacts.find(name))
+    settings.stances["ground 2"].forward = 0.5
+    first, second = landing(settings)[0], add_to_landing(settings, "Right hand")
+    moves = [np.subtract(row.at, row.found_at) for row in (first, second)]
+    np.testing.assert_allclose(moves[1], moves[0], atol=1e-6)
+    assert np.linalg.norm(moves[0]) == pytest.approx(0.5, abs=1e-5)
+
+
 def test_where_contacts_were_moved_one_by_one_the_nearest_s_move_is_an_added_one_s(
     analysed: bpy.types.Object,
 ) -> None:
@@ -136,6 +149,7 @@ def test_a_contact_that_is_added_to_a_stance_that_stays_is_where_it_was_recorded
     assert "Left hand added" not in pins(analysed)
 
 
+@pytest.mark.slow
 def test_an_empty_carries_its_stance(analysed: bpy.types.Object) -> None:
     settings = analysed.hangtime
     first, second = landing(settings)[:2]
