@@ -39,13 +39,13 @@ if TYPE_CHECKING:  # as in clip.py
 EXPORTED = "adapted"  # file name without ending
 SAVED = f"{EXPORTED}.blend"
 BEST = "best_found.blend"
-PICTURE = "sheet.png"
+PICTURE, FILM = "sheet.png", "film.mp4"
 ASIDE = 1.5  # m; how far the recording stands beside the adapted figure
 
 
 def require_apart(inputs: Iterable[Path], folder: Path, export: ExportOptions) -> None:
     """Before a solve takes its seconds. inputs: what a job reads. Raises WouldReplaceInput."""
-    names = (SAVED, BEST, PICTURE, TRAJECTORY, *REPORTS)
+    names = (SAVED, BEST, PICTURE, FILM, TRAJECTORY, *REPORTS)
     results = (_exported(folder, export), *(folder / name for name in names))
     there = [path for path in results if path.exists()]
     for read, written in product(inputs, there):
@@ -166,7 +166,7 @@ class Outputs:
         if film:
             with self.stages.stage("Drawing the film"), quiet():
                 marks = marks_of(adaptation, self.result.subject.problem)
-                draw_moving(adaptation, problem, self.outbox.path("film.mp4"), marks)
+                draw_moving(adaptation, problem, self.outbox.path(FILM), marks)
 
     def write_failure(self) -> None:
         """The report, and the best motion that was found."""
