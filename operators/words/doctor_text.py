@@ -63,6 +63,8 @@ SENTENCES = {
     "{n:.0f} cm, as capture by one camera has it.",
     FindingKind.SINKING: "The feet are up to {n:.0f} cm below the floor that they stand on "
     "elsewhere, {part} most, {where}.",
+    FindingKind.SLIDING_FEET: "Feet slide while they stand, {part} most, by {n:.0f} cm: {where}. "
+    "Contacts hold them.",
     FindingKind.FLICKER: "{part} and others leave the floor for moments and come back {where}.",
     FindingKind.UNSEEN_SUPPORT: "Nothing touches, yet the body does not fall {where}: something "
     "carries it that the recording does not show.",

@@ -37,6 +37,7 @@ class FindingKind(Enum):
     IN_PLACE = "in place"
     FLOATING = "floating"
     SINKING = "sinking"
+    SLIDING_FEET = "sliding feet"
     FLICKER = "flicker"
     UNSEEN_SUPPORT = "unseen support"
     SKIDDING = "skidding"
@@ -50,6 +51,7 @@ class FindingKind(Enum):
 
 
 _NOTES = (
+    FindingKind.SLIDING_FEET,
     FindingKind.UNSEEN_SUPPORT,
     FindingKind.SKIDDING,
     FindingKind.BEGINS_IN_AIR,

@@ -32,6 +32,7 @@ from ..lengths import find_lengths
 from ..noise import find_noise, reach
 from ..repairs import Repairs
 from ..retimed import explained, find_retimed
+from ..stance.feet import find_sliding_feet
 from ..stance.footing import find_footing
 from ..stretch import CUTTING, Span, longest_stretch
 from ..upright import find_level_hips, find_up
@@ -41,6 +42,8 @@ from .repair import placed_skin, repaired, taken_out
 from .scales import find_scales
 
 PARTING = (FindingKind.JUMP, FindingKind.LEAP)
+# What moves the feet along the floor with the body; where it is told they slide for that.
+WHOLE_BODY = (FindingKind.SLIDING, FindingKind.IN_PLACE, FindingKind.FLOATING)
 LEAST_KEPT = 0.5  # s; of less nobody makes a range
 GAPS = (FindingKind.DROPPED_FRAMES, FindingKind.JUMP)
 MASS_BY_SQUARE = (12.0, 42.0)  # kg/m²; children have 14, the heaviest who jump 40
@@ -168,8 +171,12 @@ def diagnose(
     drifts = find_drifts(lambda repairs: as_stood(performed(repairs), scene), figure, placed)
     found += drifts
     placed = reduce(Repairs.joined, map(_remedy, drifts), placed)
-    footing = find_footing(as_stood(performed(placed), scene), touched(placed))
+    stood = as_stood(performed(placed), scene)
+    footing = find_footing(stood, touched(placed))
     found += footing if retimed is None else explained(footing, retimed)
+    feet = find_sliding_feet(stood)
+    if feet is not None and not any(finding.kind in WHOLE_BODY for finding in found):
+        found.append(feet)
     fitting = None
     if mass is not None and not (MASS_BY_SQUARE[0] < mass / height**2 < MASS_BY_SQUARE[1]):
         fitting = USUAL_MASS_BY_SQUARE * height**2

@@ -10,11 +10,14 @@ import numpy as np
 from ...analysis.performance import Performance, contact_points
 from ...arrays import BoolArray, FloatArray
 from ...data.contacts import ContactPoint, PointKind
+from ..falls import Spans
+from ..finding import Finding, FindingKind
 from ..local_poses import runs
-from .footing import DRIFT, FLOOR_OFF, LOW, STANDING_SPEED_UP
+from .footing import DRIFT, FLOOR_OFF, HONEST, LOW, STANDING_SPEED_UP
 
 SHORTEST = 0.1  # s; what is over sooner is a step's own unrest
 LEAST_SLID = 0.02  # m from its place; soles that roll do less
+SWING = 0.8  # m/s, on its way; a foot that is low and faster swings
 
 
 class FootFaultKind(Enum):
@@ -66,6 +69,32 @@ def find_feet(performance: Performance) -> tuple[FootFault, ...]:
     return tuple(sorted(found, key=lambda fault: fault.first))
 
 
+def find_sliding_feet(performance: Performance) -> Finding | None:
+    """Points of feet that slide further while they stand than honest ones do: the worst, and the
+    frames of all."""
+    slides = [
+        fault
+        for fault in find_feet(performance)
+        if fault.kind is FootFaultKind.SLIDES and fault.amount > HONEST
+    ]
+    if not slides:
+        return None
+    worst = max(slides, key=lambda fault: fault.amount)
+    amount = 100.0 * worst.amount
+    return Finding(FindingKind.SLIDING_FEET, amount, "cm", _places(slides), worst.point)
+
+
+def _places(faults: list[FootFault]) -> Spans:
+    """The first and last frames of faults in their order, those that overlap as one."""
+    places: list[tuple[float, float]] = []
+    for fault in faults:
+        if places and fault.first <= places[-1][1] + 1.0:
+            places[-1] = places[-1][0], max(places[-1][1], fault.last)
+        else:
+            places.append((fault.first, fault.last))
+    return tuple(places)
+
+
 def _faults(
     performance: Performance, kind: FootFaultKind, name: str, point: ContactPoint, wrong: BoolArray
 ) -> list[FootFault]:
@@ -74,7 +103,9 @@ def _faults(
     found = []
     for first, last in runs(wrong):
         amount = _amount(kind, point.track[first : last + 1])
-        if last - first + 1 >= least and (kind is not FootFaultKind.SLIDES or amount > LEAST_SLID):
+        fastest = SWING * float(performance.times[last] - performance.times[first])
+        slides = kind is FootFaultKind.SLIDES
+        if last - first + 1 >= least and (not slides or LEAST_SLID < amount < fastest):
             ends = float(frames[first]), float(frames[last])
             found.append(FootFault(kind, name, point.bone, (x, y, z), *ends, amount))
     return found

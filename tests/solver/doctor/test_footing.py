@@ -12,6 +12,7 @@ from hangtime.devtools.doctor.damages import (
     rising,
     sliding,
     sunk,
+    swaying,
 )
 from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.analysis.analyse import analyse
@@ -23,7 +24,7 @@ from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.examination.repair import repaired
 from hangtime.solver.doctor.finding import FindingKind
-from hangtime.solver.doctor.stance.feet import FootFaultKind, find_feet
+from hangtime.solver.doctor.stance.feet import FootFault, FootFaultKind, find_feet
 from hangtime.solver.doctor.stance.footing import find_footing, find_rise, find_sliding
 from hangtime.solver.doctor.stance.in_place import find_in_place
 from hangtime.tests.helpers.clips import JUMP, load_recording
@@ -229,3 +230,21 @@ def test_feet_that_float_sink_or_slide_are_told_by_point_and_frames() -> None:
         assert max(fault.amount for fault in found) > 0.15
     slid = sliding(0.3).of(jump()).recording
     assert FootFaultKind.SLIDES in {f.kind for f in find_feet(perform(slid, character()))}
+
+
+def test_feet_that_slide_are_noted_and_those_that_swing_low_are_not() -> None:
+    """As video capture has it: the body to and fro, twice in a stance."""
+    assert FindingKind.SLIDING_FEET not in {f.kind for f in diagnose(jump()).findings}
+    swayed = swaying(0.03, 0.5).of(jump()).recording
+    (found,) = (f for f in diagnose(swayed).findings if f.kind is FindingKind.SLIDING_FEET)
+    assert found.kind.note
+    assert 3.0 < found.amount < 8.0
+    swung = feet_that_slide("131_03_hop.bvh")
+    assert swung
+    assert max(fault.amount for fault in swung) < 0.15
+
+
+def feet_that_slide(name: str) -> list[FootFault]:
+    recording = load_recording(name)
+    faults = find_feet(perform(recording, build_character(recording)))
+    return [fault for fault in faults if fault.kind is FootFaultKind.SLIDES]
