@@ -32,7 +32,7 @@ from ..data.scene import SupportBox
 from ..scene.belt import belt_speed
 from ..scene.fall_rate import fitting_rate
 from ..scene.support import boxes_beneath
-from .contact_detection import falls_beside_unseen, unseen_support
+from ..unseen.free_fall import falls_beside_unseen, unseen_support
 from .grounding import disjoint, foot_sized, grounded, parted
 from .performance import (
     Performance,

@@ -15,7 +15,8 @@ from ..data.recording import Recording, Skin
 from ..data.scene import SceneObject
 from ..numerics.interpolation import interpolate
 from ..scene.support import StandingGround, boxes_beneath, level, on_boxes
-from .contact_detection import clear_falls, detect_contacts, without_falls
+from ..unseen.free_fall import clear_falls, without_falls
+from .contact_detection import detect_contacts
 from .skin import skin_of_bodies
 from .soles import FootTracks, floor_height, foot_points
 
