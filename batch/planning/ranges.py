@@ -58,17 +58,25 @@ class Combine(Enum):
 
 @dataclass(frozen=True)
 class ValueRange:
-    """What stands for one key of a recipe: its values, or bounds between which it is drawn."""
+    """What stands for one key of a recipe: its values, or bounds between which it is drawn.
+
+    values: as they are listed; a "zip" may need one twice.
+    """
 
     place: KeyPath
     values: tuple[Value, ...] = ()
     bounds: tuple[float, float] | None = None
     both_ways: bool = False
 
+    @property
+    def distinct(self) -> tuple[Value, ...]:
+        """The values, none twice."""
+        return tuple(dict.fromkeys(self.values))
+
     def drawn(self, random: Random) -> Value:
         """A value at random."""
         if self.bounds is None:
-            return self.values[random.randrange(len(self.values))]
+            return self.distinct[random.randrange(len(self.distinct))]
         sign = random.choice((1, -1)) if self.both_ways else 1
         return _plain(sign * random.uniform(*self.bounds))
 
@@ -123,13 +131,12 @@ def _range(table: Table) -> ValueRange:
     if steps is None:
         return ValueRange(table.place, bounds=(low, high), both_ways=both_ways)
     count = int(steps)
-    numbers = (_plain(low + (high - low) * i / (count - 1)) for i in range(count))
-    apart = tuple(dict.fromkeys(numbers))
-    return ValueRange(table.place, _both_ways(apart, table) if both_ways else apart)
+    numbers = tuple(_plain(low + (high - low) * i / (count - 1)) for i in range(count))
+    return ValueRange(table.place, _both_ways(numbers, table) if both_ways else numbers)
 
 
 def _listed(values: list[Any], place: KeyPath, source: Source) -> tuple[Value, ...]:
-    """Single values, at least one, none twice."""
+    """Single values, at least one."""
     if not values:
         source.refuse(place, "the range is empty; write the values that it shall have")
     for i, value in enumerate(values):
@@ -137,14 +144,14 @@ def _listed(values: list[Any], place: KeyPath, source: Source) -> tuple[Value, .
         if not single or (isinstance(value, float) and not math.isfinite(value)):
             problem = f"a range holds finite numbers or words, not {shown(value)}"
             source.refuse((*place, i), problem)
-    return tuple(dict.fromkeys(values))
+    return tuple(values)
 
 
 def _both_ways(values: Sequence[Value], table: Table) -> tuple[Value, ...]:
     numbers = [v for v in values if isinstance(v, int | float) and not isinstance(v, bool)]
     if len(numbers) < len(values):
         table.refuse("both_ways", "only numbers go both ways; take that away")
-    return tuple(dict.fromkeys([*numbers, *(-number or 0 for number in numbers)]))
+    return *numbers, *(-number or 0 for number in numbers)
 
 
 def _plain(number: float) -> float:
@@ -176,17 +183,17 @@ def count_of(ranges: Sequence[ValueRange], how: Combination, source: Source) -> 
         if each.bounds is not None and how.combine is not Combine.SAMPLE:
             problem = 'the range has no "steps"; add them, or draw samples from it: see [batch]'
             source.refuse(each.place, problem)
-    lengths = [len(each.values) for each in ranges]
+    every = math.prod(len(each.distinct) for each in ranges)  # 0 where one is drawn between bounds
     match how.combine:
         case Combine.PRODUCT:
-            return math.prod(lengths)
+            return every
         case Combine.ZIP:
+            lengths = [len(each.values) for each in ranges]
             for each, length in zip(ranges, lengths, strict=True):
                 if length != lengths[0]:
                     problem = f"this range has {length} values and another {lengths[0]}; "
                     source.refuse(each.place, problem + 'ranges in a "zip" have as many each')
-            return lengths[0]
-    every = math.prod(lengths)  # 0 where one is drawn between bounds
+            return len(_zipped(ranges))
     assert how.count is not None
     if 0 < every < how.count:
         problem = f"{how.count} samples of {every} combinations; write at most {every}"
@@ -200,11 +207,16 @@ def variants(ranges: Sequence[ValueRange], how: Combination) -> Iterator[tuple[V
         case _ if not ranges:
             yield ()
         case Combine.PRODUCT:
-            yield from product(*(each.values for each in ranges))
+            yield from product(*(each.distinct for each in ranges))
         case Combine.ZIP:
-            yield from zip(*(each.values for each in ranges), strict=True)
+            yield from _zipped(ranges)
         case Combine.SAMPLE:
             yield from _samples(ranges, how)
+
+
+def _zipped(ranges: Sequence[ValueRange]) -> list[tuple[Value, ...]]:
+    """The first values of all, the second ones and so on, none of these twice."""
+    return [*dict.fromkeys(zip(*(each.values for each in ranges), strict=True))]
 
 
 def _samples(ranges: Sequence[ValueRange], how: Combination) -> Iterator[tuple[Value, ...]]:
@@ -214,7 +226,7 @@ def _samples(ranges: Sequence[ValueRange], how: Combination) -> Iterator[tuple[V
         for _ in range(how.count):
             yield tuple(each.drawn(random) for each in ranges)
         return
-    lists = [each.values for each in ranges]
+    lists = [each.distinct for each in ranges]
     for place in _places(math.prod(map(len, lists)), how.count, random):
         yield _combination_at(place, lists)
 

@@ -52,6 +52,14 @@ def test_product_is_every_value_with_every_other_and_zip_the_first_with_the_firs
     ]
 
 
+def test_a_value_may_stand_in_a_zip_twice_and_a_pair_does_not(tmp_path: Path) -> None:
+    lines = "forward = [0, 0.1, 0, 0.1, 0]\nup = { values = [0, 0, 0.1, 0.1, 0] }"
+    zipped = values_of(tmp_path, lines, '[batch]\ncombine = "zip"\n')
+    pairs = [(v[FORWARD], v["pin.Landing.up"]) for v in zipped]
+    assert pairs == [(0, 0), (0.1, 0), (0, 0.1), (0.1, 0.1)]
+    assert len(values_of(tmp_path, lines)) == 4
+
+
 @given(
     count=st.integers(1, 40),
     seed=st.integers(0, 10**6),
