@@ -15,7 +15,8 @@ from ..armature.fcurves import KeyTable, joined, linear_keys, put, table
 from .take_time import TakeTime
 
 EPSILON = 1e-4  # frames
-_FREE = 0  # values of Blender's enums
+_CONSTANT = 0  # values of Blender's enums
+_FREE = 0
 _BEZIER = 2
 _ALIGNED = 3
 
@@ -23,16 +24,37 @@ _ALIGNED = 3
 def retime(curve: bpy.types.FCurve, time: TakeTime) -> None:
     """Move keys and handles to where the take's frames are in the result.
 
-    Keys outside of the frames whose durations changed take their handles along as they are.
+    Keys outside of the frames whose durations changed take their handles along as they are. A curve
+    with a key on every one of these, as of a recording, gets keys of what it shows on every frame.
     """
     keys = table(curve)
     at = keys["co"][:, 0].copy()
     before, after = at <= time.recorded[0], at >= time.recorded[-1]
+    whole = _whole_frames(at, time) if _is_baked(keys, ~(before | after)) else np.empty(0)
+    shown = np.array([curve.evaluate(f) for f in time.to_recorded(whole)])
     for name in ("co", "handle_left", "handle_right"):
         frames = keys[name][:, 0].copy()
         keys[name][:, 0] = np.where(after, frames + time.later, time.to_result(frames))
         keys[name][before, 0] = frames[before]
     put(curve, keys)
+    if len(shown):
+        ends = float(time.result[0]), float(time.result[-1])
+        splice(curve, whole, shown, ends, FullTurns())
+
+
+def _is_baked(keys: KeyTable, changed: NDArray[np.bool_]) -> bool:
+    """Whether keys are on every whole frame among those whose place in time changes, none held."""
+    at = keys["co"][changed, 0]
+    whole = len(at) > 1 and bool(np.abs(at - np.round(at)).max() < EPSILON)
+    each = whole and bool(np.diff(at).max() < 1.0 + EPSILON)
+    return each and bool((keys["interpolation"][changed] != _CONSTANT).all())
+
+
+def _whole_frames(at: FloatArray, time: TakeTime) -> FloatArray:
+    """Of a result, where durations changed, as far as keys at a take's frames (n,) go."""
+    first, last = time.to_result(at[[0, -1]]).tolist()
+    first, last = max(first, time.result[0]), min(last, time.result[-1])
+    return np.arange(np.ceil(first - EPSILON), np.floor(last + EPSILON) + 1.0)
 
 
 @dataclass(frozen=True)

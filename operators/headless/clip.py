@@ -21,6 +21,8 @@ from ...solver.worker.stated_scale import check_scale
 from .quiet import quiet
 from .stages import Stages
 
+SCENE = ".blend"
+
 # bpy and what needs it are loaded in functions: the command line must say what is wrong with its
 # arguments before Blender's module takes its second.
 if TYPE_CHECKING:
@@ -63,6 +65,11 @@ class LoadedClip:
     problem: MotionProblem
     subject: Subject
     skin: SkinReading
+
+    @property
+    def in_scene(self) -> bool:
+        """Whether it came in a .blend, whose scene may hold more."""
+        return Path(self.origin.clip).suffix.lower() == SCENE
 
 
 def read_clip(clip: Clip, problem: MotionProblem) -> tuple[Recording, Origin]:
@@ -112,7 +119,7 @@ def load(
 
 
 def _import(clip: Clip) -> tuple[bpy.types.Object, Origin]:
-    if clip.path.suffix.lower() == ".blend":
+    if clip.path.suffix.lower() == SCENE:
         return _open(clip.path), Origin(clip.path.name)
     import bpy
 

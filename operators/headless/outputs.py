@@ -231,7 +231,7 @@ class Outputs:
             adapted, written = write_result(armature, self._motion(), name=name)
             side_by_side(armature, recorded, adapted, offset=self._beside())
         first, last = adapted.frame_range.to_tuple()
-        _show_frames(round(first), round(last))
+        _show_frames(round(first), round(last), alone=not self.clip.in_scene)
         return armature, adapted, written
 
     def _mark_contacts(self, performer: bpy.types.Object, adapted: bpy.types.Action) -> None:
@@ -334,11 +334,13 @@ class Outputs:
         return (-ASIDE * y / far, ASIDE * x / far, 0.0) if far > 0.05 else (ASIDE, 0.0, 0.0)
 
 
-def _show_frames(first: int, last: int) -> None:
+def _show_frames(first: int, last: int, *, alone: bool) -> None:
+    """Play these frames, and what the scene played before, if they are not all that is in it."""
     from ...bridge.accessors import current_scene
 
     scene = current_scene()
-    scene.frame_start, scene.frame_end = first, last
+    start, end = (first, last) if alone else (scene.frame_start, scene.frame_end)
+    scene.frame_start, scene.frame_end = min(first, start), max(last, end)
     scene.frame_set(first)
 
 

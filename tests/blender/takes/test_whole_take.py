@@ -235,6 +235,25 @@ def test_what_follows_comes_as_much_later_as_the_frames_take_longer(locked: bool
     assert smile[:, 1] == pytest.approx([0.1, 0.2, 0.9])
 
 
+def test_curves_with_a_key_on_every_frame_have_one_on_every_frame_of_the_result() -> None:
+    """Also to its very end, where the take ends with the adapted frames."""
+    armature = take()
+    finger = armature.pose.bones["finger"]
+    finger["smile"] = 0.0
+    for frame in range(1, LAST + 1):
+        finger["smile"] = float(frame)
+        finger.keyframe_insert('["smile"]', frame=frame)
+    (curve,) = (c for c in fcurves.curves_of(armature) if "smile" in c.data_path)
+    for key in curve.keyframe_points:
+        key.interpolation = "LINEAR"
+    write_result(armature, later(read_recording(armature)), name="Result")
+    smile = keys_of(armature)['pose.bones["finger"]["smile"]', 0]
+    assert smile[:, 0].tolist() == list(range(1, LAST + 4))
+    shown = np.interp(smile[:, 0], [FIRST, 53.4, LAST + 3.4], [FIRST, 50.0, LAST])
+    inside = smile[:, 0] >= FIRST
+    assert smile[inside, 1] == pytest.approx(shown[inside], abs=1e-4)
+
+
 def test_markers_and_other_slots_go_along_in_time() -> None:
     armature = take()
     action = armature.animation_data.action

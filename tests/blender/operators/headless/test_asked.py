@@ -79,12 +79,14 @@ def test_a_take_that_a_strip_plays_later_stays_there(clip: Path, tmp_path: Path)
     data = import_clip(clip).armature.animation_data
     strip = data.nla_tracks.new().strips.new("Mine", 51, data.action)  # 50 frames later
     data.action = None
+    bpy.context.scene.frame_end = 500  # for others that are in it
     path = tmp_path / "played.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
     text = 'frames = [150, 340]\n[result]\nwritten_as = "combine"\n[keys]\non = "as the take"\n'
     assert strip.frame_start == 51.0
     assert run(tmp_path, path, text, "--no-picture") == 0
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "out" / "adapted.blend"))
+    assert (bpy.context.scene.frame_start, bpy.context.scene.frame_end) == (1, 500)
     figure = bpy.data.objects[clip.stem]
     assert len(figure.animation_data.nla_tracks) == 2
     frames = np.array([80.0, 160.0, 240.0, 300.0, 360.0])
