@@ -43,6 +43,11 @@ def preset_path(name: str) -> Path:
     return preset_folder() / f"{_NOT_IN_FILES.sub('_', name.strip())}{SUFFIX}"
 
 
+def is_preset(name: str) -> bool:
+    """Whether there is a preset of that name."""
+    return bool(name.strip()) and preset_path(name).exists()
+
+
 def free_preset_name(name: str, bones: Mapping[str, str]) -> str:
     """The name, where no preset of that name says anything else; else the next that is free:
     "My Rig 2"."""

@@ -178,10 +178,10 @@ class HangtimeSettings(bpy.types.PropertyGroup):
         name="Method",
         description="How the quick solution goes about it",
         items=[
-            ("IMPLICIT", "Movement and Forces", "The nearest motion in shape and forces; fastest"),
+            ("IMPLICIT", "Without Torques", "The nearest motion in shape and forces; fastest"),
             (
                 "IMPLICIT_TORQUES",
-                "Movement, Forces and Torques",
+                "With Torques",
                 "The nearest motion in shape, forces and the torques of all joints",
             ),
         ],

@@ -11,6 +11,7 @@ from ...bridge.constraints.bone_mapping import choose_parts, find_parts
 from ...bridge.constraints.bone_presets import (
     SUFFIX,
     free_preset_name,
+    is_preset,
     mapped_bones,
     preset_path,
     read_preset,
@@ -23,6 +24,7 @@ from ..solve.common import FaultyOperator, chosen_armature, required_armature
 
 NO_ARMATURE = "Choose or select an armature first"
 THERE_ALREADY = "There is a bone preset “{}” already: choose another name, or tick Replace"
+NO_PRESET = "There is no bone preset “{}”"
 NO_NAME = "Give the file a name"
 NO_BONES = "No bones are mapped: press Find Bones, or choose them"
 MOST_NAMED = 4  # in a message
@@ -67,7 +69,7 @@ class SaveBonePresetOperator(_BonePreset, bpy.types.Operator):
             layout.prop(self, "replace")
 
     def _is_there(self) -> bool:
-        return bool(self.name.strip()) and preset_path(self.name).exists()
+        return is_preset(self.name)
 
     def run(self, context: bpy.types.Context) -> OperatorResult:
         bones = _mapped(context)
@@ -89,6 +91,8 @@ class ApplyBonePresetOperator(_BonePreset, bpy.types.Operator):
     name: bpy.props.StringProperty(name="Name")
 
     def run(self, context: bpy.types.Context) -> OperatorResult:
+        if not is_preset(self.name):
+            return self.refuse(NO_PRESET.format(self.name))
         self.apply(context, read_preset(preset_path(self.name)), self.name)
         return {"FINISHED"}
 
@@ -105,7 +109,9 @@ class RemoveBonePresetOperator(FaultyOperator, bpy.types.Operator):
         return None
 
     def run(self, _context: bpy.types.Context) -> OperatorResult:
-        preset_path(self.name).unlink(missing_ok=True)
+        if not is_preset(self.name):
+            return self.refuse(NO_PRESET.format(self.name))
+        preset_path(self.name).unlink()
         self.report({"INFO"}, f"Removed the bone preset “{self.name}”")
         return {"FINISHED"}
 

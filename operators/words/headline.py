@@ -9,12 +9,14 @@ from ...solver.data.reports.constraints import AcceptedReport, ConstraintReport,
 from ...solver.data.reports.keys import MissedContact
 from ...solver.data.reports.report import FitQuality, Report
 from ...solver.data.row_kinds import RowKind
-from ...solver.data.status import Status
+from ...solver.data.status import Durations, Status
 from .messages import length, outcome, sentence
 
 MOST_NAMED = 3  # of the certificate's lines that fail, in a headline
 MOST_MISSED = 3  # contacts
 MOST_GIVEN_UP = 5  # of what is in each other, likewise
+NOT_FOUND = (Durations.NONE_FOUND, Durations.NOT_MET)
+AS_RECORDED = "Durations are as recorded, as none were found that go with the moved landing"
 FITS = (CertificateItem.FIT_RMS, CertificateItem.FIT_WORST_FRAME)
 
 # What may be done about keys that do not show what was solved.
@@ -58,6 +60,7 @@ def headline(report: Report) -> list[str]:
     accepted = accepted_lines(report.needs)
     told = [nearness(report.fit_to_recording), *accepted, *lifted_lines(report)]
     told += given_up_lines(report)
+    told += [AS_RECORDED] if report.durations in NOT_FOUND else []
     told += [line_told(line) for line in most_telling(report.failed)]
     missed = [missed_line(report.missed_contacts)] if report.missed_contacts else []
     return [*missed, _solved(report), *(f"  {line}" for line in told)]

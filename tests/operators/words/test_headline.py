@@ -2,12 +2,14 @@
 
 from dataclasses import replace
 
+import pytest
 from hangtime.operators.words.headline import MOST_GIVEN_UP, headline
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.reports.constraints import ConstraintReport
 from hangtime.solver.data.reports.jumps import LiftedFlight
 from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.data.row_kinds import RowKind
+from hangtime.solver.data.status import Durations
 from hangtime.solver.results.report import report
 from hangtime.solver.stages.implicit import adapt
 from hangtime.tests.helpers.fitted_hop import fitted_hop
@@ -44,6 +46,15 @@ def test_a_flight_that_lifting_made_longer_is_told_with_its_frames() -> None:
     (line,) = [line for line in lines if "nothing touches from frame 199 to 292" in line]
     assert "“One leg”" in line
     assert "0.77 s" in line
+
+
+@pytest.mark.parametrize("durations", Durations)
+def test_durations_that_were_sought_in_vain_are_told(durations: Durations) -> None:
+    problem = MotionProblem()
+    made = report(adapt(fitted_hop(), problem), problem, Origin("hop"))
+    lines = headline(replace(made, durations=durations))
+    in_vain = durations in (Durations.NONE_FOUND, Durations.NOT_MET)
+    assert any("Durations are as recorded" in line for line in lines) == in_vain
 
 
 def test_where_nothing_gave_way_nothing_is_said_of_it() -> None:

@@ -64,6 +64,10 @@ def test_a_choice_is_kept_as_a_preset_and_applied_to_another_armature() -> None:
     assert bone(second, "left toe") == "uta7"
     assert bpy.ops.hangtime.remove_bone_preset(name="Mine") == {"FINISHED"}
     assert bone_presets.preset_names() == []
+    for name in ("Mine", " "):
+        for ask in (bpy.ops.hangtime.remove_bone_preset, bpy.ops.hangtime.apply_bone_preset):
+            with pytest.raises(RuntimeError, match="There is no bone preset"):
+                ask(name=name)
 
 
 def test_presets_are_exported_and_imported(tmp_path: Path) -> None:
