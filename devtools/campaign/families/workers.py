@@ -185,6 +185,15 @@ def _kill(pid: int) -> None:
     os.kill(pid, signal.SIGKILL)
 
 
+def _wait_for_end(pid: int) -> None:
+    """Until a killed process is at its end, which on a busy machine takes a while."""
+    stat, end = Path(f"/proc/{pid}/stat"), time.monotonic() + LOADING
+    while stat.exists() and stat.read_text().rpartition(")")[2].split()[0] != "Z":
+        if time.monotonic() > end:
+            raise TimeoutError(f"process {pid} was killed and goes on")
+        time.sleep(0.01)
+
+
 def _abused(case: HostileCase, abuse: Callable[[int], None]) -> None:
     with _Asked.about(case) as asked:
         time.sleep(case.rng.uniform(0.0, 2.5))
@@ -192,7 +201,7 @@ def _abused(case: HostileCase, abuse: Callable[[int], None]) -> None:
         answer = asked.answer()
         if asked.worker.pid is not None:
             _kill(asked.worker.pid)  # it lives on with little memory
-            time.sleep(0.1)
+            _wait_for_end(asked.worker.pid)
         asked.again()
     if isinstance(answer, Failed):
         raise answer.fault
