@@ -51,6 +51,9 @@ class Stages(StageClock):
         try:
             yield
             end = "\n"
+        except KeyboardInterrupt:
+            end = "   cancelled\n"
+            raise
         finally:
             stage, self._current = self._current, None
             self._show(stage, end)
