@@ -22,7 +22,8 @@ def belt_speed(times: FloatArray, points: Mapping[str, ContactPoint]) -> float |
         if point.kind is PointKind.TOE:
             height = point.track[:, 2]
             velocity = np.gradient(point.track[:, :2], times, axis=0)
-            slides.append(velocity[height < np.percentile(height, LOW_SHARE)])
+            # Feet that were locked to a floor are at one height throughout: none would be below it.
+            slides.append(velocity[height <= np.percentile(height, LOW_SHARE)])
     slide = np.concatenate(slides)
     steady = np.median(slide, axis=0)
     speed = float(np.linalg.norm(steady))

@@ -1,5 +1,6 @@
 """Treadmills are told as such; steps over the ground are not."""
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -30,3 +31,15 @@ def test_a_run_on_a_belt_is_a_treadmill() -> None:
     assert found.speed == pytest.approx(speed, rel=0.1)
     with pytest.raises(Treadmill):
         analyse(belt, MotionProblem(unseen=Unseen.REFUSE))
+
+
+def test_feet_that_stay_at_one_height_are_seen_on_a_belt_without_a_warning() -> None:
+    """As of a figure without moving bones, of which no frame has lower toes than the others."""
+    run = load_recording(RUN)
+    still = [np.repeat(each[:1], len(run.times), axis=0) for each in (run.heads, run.rotations)]
+    heads = still[0] + run.times[:, None, None] * [2.0, 0.0, 0.0]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        (found,) = analyse(replace(run, heads=heads, rotations=still[1]), MotionProblem()).unseen
+    assert isinstance(found, Treadmill)
+    assert found.speed == pytest.approx(2.0)
