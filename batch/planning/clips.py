@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from glob import glob
 from pathlib import Path
 
@@ -42,11 +42,29 @@ def _meant(word: str, out: Path) -> list[Path]:
 
 def files_meant(word: str, suffixes: Collection[str], out: Path) -> list[Path]:
     """The files with such suffixes that a folder (with all below) or a pattern means, sorted; none
-    of the batch's own folder."""
+    of the batch's own folder. Raises WrongPlan."""
     path, own = Path(word), out.resolve()
-    inside = path.rglob("*") if path.is_dir() else map(Path, glob(word, recursive=True))
-    files = (p for p in inside if p.suffix.lower() in suffixes and p.is_file())
+    inside = _below(path, own) if path.is_dir() else map(Path, glob(word, recursive=True))
+    try:
+        files = [p for p in inside if p.suffix.lower() in suffixes and p.is_file()]
+    except OSError as error:
+        raise WrongPlan(
+            f"{error.filename} cannot be read ({error.strerror}); allow reading it, or name the "
+            "files and folders beside it one by one."
+        ) from error
     return sorted(p for p in files if not p.resolve().is_relative_to(own))
+
+
+def _below(folder: Path, own: Path) -> Iterator[Path]:
+    """The files in a folder and all below, but for those of the batch's own. Raises OSError for a
+    folder that cannot be read: `rglob` passes it over, and its clips would be missing unsaid."""
+    for parent, folders, names in os.walk(folder, onerror=_raise):
+        folders[:] = [name for name in folders if Path(parent, name).resolve() != own]
+        yield from (Path(parent, name) for name in names)
+
+
+def _raise(error: OSError) -> None:
+    raise error
 
 
 def _listed() -> str:

@@ -1,6 +1,8 @@
 """Planning: clips and recipes to cells, what is kept of an earlier plan, and what is refused."""
 
+import errno
 import json
+import os
 import shutil
 from pathlib import Path
 
@@ -63,6 +65,24 @@ def test_files_folders_and_patterns_mean_each_clip_once(library: Library) -> Non
     clips = library.folder / "clips"
     words = [str(clips / "a.bvh"), str(clips), str(clips / "**" / "*.bvh")]
     assert len(find_clips(words, library.out)) == 3
+
+
+def test_a_folder_that_cannot_be_read_refuses_the_batch(
+    library: Library, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its clips would be missing, and the batch would end well. Tests may run as root, who can
+    read all."""
+    locked, scan = library.folder / "clips" / "second take", os.scandir
+
+    def refusing(path: str) -> object:
+        if Path(path) == locked:
+            raise PermissionError(errno.EACCES, "Permission denied", path)
+        return scan(path)
+
+    monkeypatch.setattr(os, "scandir", refusing)
+    with pytest.raises(WrongPlan, match=r"clips.second take cannot be read \(Permission denied\)"):
+        library.plan()
+    assert not library.out.exists()
 
 
 def test_a_batchs_own_results_are_neither_its_clips_nor_its_recipes(library: Library) -> None:
