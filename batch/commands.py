@@ -122,6 +122,8 @@ def _add_planning(each: argparse.ArgumentParser, name: str) -> None:
     each.add_argument(
         "--rate", type=_positive, metavar="HZ", help="AMC and BVH files' frames a second"
     )
+    each.add_argument("--take", metavar="NAME", help="which, of FBX files that hold several")
+    each.add_argument("--armature", metavar="NAME", help="whose motion, of such files")
     each.add_argument(
         "--jobs", type=_count, default=cores(), metavar="N", help="at once (default: the cores)"
     )
@@ -252,7 +254,15 @@ def plan_batch(options: argparse.Namespace) -> int:
 
 
 def _planned(options: argparse.Namespace) -> Planned:
-    settings = BatchSettings(options.outputs, options.check, options.unit, options.up, options.rate)
+    settings = BatchSettings(
+        options.outputs,
+        options.check,
+        options.unit,
+        options.up,
+        options.rate,
+        options.armature,
+        options.take,
+    )
     asked = Asked(settings, options.clips, options.recipes, options.table)
     planned = plan(asked, options.out)
     cells = planned.manifest.cells

@@ -176,7 +176,14 @@ def _loaded(
     problem = recipe.problem
     if needs_blender(plan.clip, settings.outputs):
         require_blender(plan.clip)
-        clip = Clip(Path(plan.clip), settings.unit, settings.up, settings.rate)
+        clip = Clip(
+            Path(plan.clip),
+            settings.unit,
+            settings.up,
+            settings.rate,
+            armature=settings.armature,
+            take=settings.take,
+        )
         scene = load(clip, problem, stages, recipe.repairs)
         return _Loaded(scene.subject, scene.origin, scene.problem, scene)
     # Neither pins nor requests tell what was recorded (as in worker/service.py); nor does the

@@ -21,6 +21,7 @@ from .result import State
 MANIFEST = "manifest.jsonl"
 FORMAT = 1
 SUM = "sum"  # of a line: a digest of all else in it, by which it knows an edit
+_LATER = ("armature", "take")  # settings that the first manifests did not have
 KEY_SHOWN = 16  # hexadecimal digits of a cell's key in its name; two of 250,000 never share them
 Value = float | int | str | bool
 AGAIN = "give the batch's command again, which writes it anew and keeps what is solved"
@@ -54,7 +55,7 @@ class BatchSettings:
     """What all cells of a batch share. check: only diagnose and fit.
 
     unit: m per unit of the clips, up: their axis that points up, rate: Hz, of AMC and BVH
-    files; None where the files tell, or it is guessed.
+    files, armature and take: of FBX files; None where the files tell, or it is guessed.
     """
 
     outputs: tuple[Output, ...] = (Output.NPZ,)
@@ -62,11 +63,16 @@ class BatchSettings:
     unit: float | None = None
     up: Literal["Y", "Z"] | None = None
     rate: float | None = None
+    armature: str | None = None
+    take: str | None = None
     version: str = field(default_factory=version)
 
     def as_record(self) -> dict[str, Any]:
-        outputs = [output.value for output in self.outputs]
-        return {"format": FORMAT, **asdict(self), "outputs": outputs}
+        record = {"format": FORMAT, **asdict(self), "outputs": [o.value for o in self.outputs]}
+        for name in _LATER:
+            if record[name] is None:  # cells go by this: those of batches before it stay the same
+                del record[name]
+        return record
 
     @staticmethod
     def of_record(record: dict[str, Any]) -> BatchSettings:

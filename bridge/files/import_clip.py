@@ -15,12 +15,11 @@ import numpy as np
 
 from ...solver.data.faults import (
     ClipNotOpened,
-    NoAction,
-    NoArmature,
     UnknownClipFormat,
     UnreadableClip,
 )
-from ..accessors import armature_data, current_action, current_scene, pose_of, present
+from ...solver.data.reports.recording import ChosenTake
+from ..accessors import current_action, current_scene, pose_of, present
 from ..armature import fcurves
 from ..armature.poses import metres_per_unit, set_frame_rate
 from ..formats.acclaim import find_asf, read_acclaim
@@ -30,6 +29,7 @@ from ..formats.guess import guess_unit, guess_up, likely_unit
 from ..formats.motion_clip import MotionClip, UpAxis
 from .build_armature import FIRST_FRAME, build_armature
 from .data_blocks import SceneState, data_blocks, remove_added
+from .fbx_takes import choose_take, places_without_keys
 
 _PLAUSIBLE_HEIGHT = (0.5, 3.0)  # m
 _HEIGHT_SAMPLES = 5
@@ -41,7 +41,8 @@ class ImportedClip:
 
     unit_m: m per unit of the file; of an FBX, whose units Blender converts itself, the factor
     applied after that. up: the file's axis that points up, None for an FBX, which tells it.
-    miscount: frames that a BVH announces, and that it holds, where these are more.
+    miscount: frames that a BVH announces, and that it holds, where these are more. chosen: what of
+    an FBX was read, and what was not.
     """
 
     armature: bpy.types.Object
@@ -50,6 +51,7 @@ class ImportedClip:
     up: UpAxis | None
     up_guessed: bool
     miscount: tuple[int, int] | None = None
+    chosen: ChosenTake | None = None
 
 
 def import_clip(
@@ -59,15 +61,17 @@ def import_clip(
     up: UpAxis | None = None,
     asf: str | Path | None = None,
     rate: float | None = None,
+    armature: str | None = None,
+    take: str | None = None,
 ) -> ImportedClip:
     """Import a .bvh, .fbx or .amc file as an armature with its action.
 
     unit: m per unit of length, up: the axis that points up (an FBX tells its own); what is not
     given is what the file tells or else guessed. asf: the skeleton of an AMC file. rate: Hz, of an
-    AMC file, which tells none, or in place of what a BVH tells. The scene gets the clip's rate,
-    range and first frame; one file frame is one scene frame. Raises ClipNotOpened,
-    UnknownClipFormat, UnreadableClip, NonFiniteKey, and for an FBX NoArmature, NoAction; nothing
-    that came in is then left behind.
+    AMC file, which tells none, or in place of what a BVH tells. armature, take: which of an FBX
+    that holds several. The scene gets the clip's rate, range and first frame; one file frame is one
+    scene frame. Raises ClipNotOpened, UnknownClipFormat, UnreadableClip, NonFiniteKey, and for an
+    FBX NoArmature, NoAction, NotInFile; nothing that came in is then left behind.
     """
     path = Path(path)
     with _nothing_left_on_failure():
@@ -79,7 +83,7 @@ def import_clip(
                 skeleton = find_asf(path) if asf is None else asf
                 return _placed(read_acclaim(skeleton, path, rate), unit, up, build_armature)
             case ".fbx":
-                return _import_fbx(path, unit)
+                return _import_fbx(path, unit, armature, take)
             case ".asf":
                 problem = "is a skeleton without motion; its AMC file holds the motion"
                 raise UnreadableClip(str(path), None, problem)
@@ -118,16 +122,22 @@ def _import_bvh(path: Path, _: MotionClip, scale: float, up: UpAxis) -> bpy.type
     return armature
 
 
-def _import_fbx(path: Path, unit: float | None) -> ImportedClip:
+def _import_fbx(
+    path: Path, unit: float | None, armature_name: str | None, take: str | None
+) -> ImportedClip:
     if not path.is_file():
         raise ClipNotOpened(str(path), "there is no such file")
     require_sound(path)
-    before = set(bpy.data.objects)
-    with _importer("io_scene_fbx", path):
+    before = data_blocks()
+    with places_without_keys() as places, _importer("io_scene_fbx", path):
         bpy.ops.import_scene.fbx(filepath=str(path), anim_offset=0.0)
     created = [o for o in bpy.data.objects if o not in before]
-    armature = _animated_armature(path, created)
-    # The importer placed the keys by the rounded rate.
+    actions = [action for action in bpy.data.actions if action not in before]
+    armature, chosen = choose_take(
+        path, created, actions, places, armature=armature_name, take=take
+    )
+    # The importer placed the keys by the rounded rate: at 29.97 frames a second 4124 frames became
+    # 4128. Of that, and of its offset, who imports by Blender's menu is warned in export.md.
     base = current_scene().render.fps_base
     if base != 1.0:
         for curve in fcurves.curves_of(armature):
@@ -140,7 +150,7 @@ def _import_fbx(path: Path, unit: float | None) -> ImportedClip:
     factor = likely_unit(height) if guessed else unit or 1.0
     if factor != 1.0:
         scale_about_origin(created, factor)
-    return ImportedClip(armature, factor, guessed, None, False)
+    return ImportedClip(armature, factor, guessed, None, False, chosen=chosen)
 
 
 # ---------------------------------------------------------------- the scene
@@ -205,18 +215,6 @@ def _nothing_left_on_failure() -> Iterator[None]:
 
 
 # ---------------------------------------------------------------- FBX
-
-
-def _animated_armature(path: Path, created: list[bpy.types.Object]) -> bpy.types.Object:
-    """Armature with the most bones among those that move."""
-    armatures = [o for o in created if o.type == "ARMATURE"]
-    if not armatures:
-        raise NoArmature(path.name)
-    armatures.sort(key=lambda armature: len(armature_data(armature).bones), reverse=True)
-    for armature in armatures:
-        if fcurves.curves_of(armature):
-            return armature
-    raise NoAction(armatures[0].name)
 
 
 def _height(armature: bpy.types.Object) -> float:

@@ -37,7 +37,7 @@ class Clip:
     """A motion file, or a .blend with a recorded armature, and what it does not tell.
 
     unit: m per unit of length. up: the axis that points up. rate: Hz, of an AMC or BVH file. asf:
-    an AMC file's skeleton.
+    an AMC file's skeleton. armature, take: which of an FBX file's.
     """
 
     path: Path
@@ -45,6 +45,8 @@ class Clip:
     up: UpAxis | None = None
     rate: float | None = None
     asf: Path | None = None
+    armature: str | None = None
+    take: str | None = None
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -129,7 +131,15 @@ def _import(clip: Clip) -> tuple[bpy.types.Object, Origin]:
     # Not the factory *settings*: those would disable the extension that runs this.
     with quiet():
         bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
-    made = import_clip(clip.path, unit=clip.unit, up=clip.up, asf=clip.asf, rate=clip.rate)
+    made = import_clip(
+        clip.path,
+        unit=clip.unit,
+        up=clip.up,
+        asf=clip.asf,
+        rate=clip.rate,
+        armature=clip.armature,
+        take=clip.take,
+    )
     present(current_action(made.armature)).name = clip.path.stem
     return made.armature, Origin(
         clip.path.name,
@@ -138,6 +148,7 @@ def _import(clip: Clip) -> tuple[bpy.types.Object, Origin]:
         made.up,
         made.up_guessed,
         miscount=made.miscount,
+        chosen=made.chosen,
     )
 
 

@@ -102,6 +102,8 @@ def _add_clip_options(each: argparse.ArgumentParser, *, optional: bool) -> None:
         help="frames a second of an AMC file, or instead of what a BVH file tells",
     )
     each.add_argument("--asf", type=Path, metavar="FILE", help="an AMC file's skeleton")
+    each.add_argument("--take", metavar="NAME", help="which, of an FBX file that holds several")
+    each.add_argument("--armature", metavar="NAME", help="whose motion, of such a file")
     each.add_argument(
         *("--bone", "--bones"),
         type=_bone,
@@ -247,12 +249,17 @@ def _clip(options: argparse.Namespace, recipe: Recipe | None) -> Clip:
             raise BadRecipe(str(options.recipe), None, problem)
         path = options.recipe.parent / recipe.clip
     _require_taken(options, path)
-    return Clip(path, options.unit, options.up, options.rate, options.asf)
+    return Clip(path, **{name: getattr(options, name) for name in _ALL})
 
 
 # By suffix: the options about how such a file is read.
-_ALL = ("unit", "up", "rate", "asf")
-_TAKEN = {".bvh": ("unit", "up", "rate"), ".fbx": ("unit",), ".blend": ()}
+_ALL = ("unit", "up", "rate", "asf", "armature", "take")
+_TAKEN = {
+    ".bvh": ("unit", "up", "rate"),
+    ".amc": ("unit", "up", "rate", "asf"),
+    ".fbx": ("unit", "armature", "take"),
+    ".blend": (),
+}
 
 
 def _require_taken(options: argparse.Namespace, path: Path) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ...solver.data.problem import MotionProblem
-from ...solver.data.reports.recording import Origin
+from ...solver.data.reports.recording import ChosenTake, Origin
 from ...solver.data.requests import AddedMass
 from ...solver.doctor.finding import Finding
 from ...solver.doctor.repairs import UpAxis
@@ -23,6 +23,7 @@ LONGEST, SHORTEST = 4.0, 0.25  # times a phase's duration
 A_FRAME = 1.0
 MOST_AWAY = 30.0  # m; the longest triple jumps go 18
 MOST_DAMAGES = 4
+MOST_TAKES = 8  # by name, of a file that may hold a hundred
 SOLES = 0.1  # m, that the highest platform shoes put between foot and floor
 
 
@@ -61,15 +62,39 @@ def distance_doubts(problem: MotionProblem, heads: FloatArray) -> list[str]:
 
 
 def file_doubts(origin: Origin) -> list[str]:
-    """A line where a file holds more frames than its header announces."""
-    if origin.miscount is None:
-        return []
-    announced, held = origin.miscount
-    return [
-        f"The header of {origin.clip} announces {announced} frames, but {held} lines of motion "
-        f"follow, and all are read. Mend “Frames:” in the file, or leave out the last by "
-        f"“trim_end = {held - announced}” under “[recording]” in the recipe"
-    ]
+    """A line where a file holds more frames than its header announces, or than one armature and one
+    take."""
+    return [*_of_count(origin), *_of_choice(origin.clip, origin.chosen)]
+
+
+def _of_count(origin: Origin) -> Iterator[str]:
+    if origin.miscount is not None:
+        announced, held = origin.miscount
+        yield (
+            f"The header of {origin.clip} announces {announced} frames, but {held} lines of motion "
+            f"follow, and all are read. Mend “Frames:” in the file, or leave out the last by "
+            f"“trim_end = {held - announced}” under “[recording]” in the recipe"
+        )
+
+
+def _of_choice(clip: str, chosen: ChosenTake | None) -> Iterator[str]:
+    if chosen is None:
+        return
+    if others := chosen.armatures:
+        yield (
+            f"{clip} holds {1 + len(others)} armatures that move: “{chosen.armature}” is read, and "
+            f"not {_first_quoted(others)} (else say --armature)"
+        )
+    if others := chosen.takes:
+        yield (
+            f"{clip} holds {1 + len(others)} takes of “{chosen.armature}”: “{chosen.take}” is "
+            f"read, and not {_first_quoted(others)} (else say --take)"
+        )
+
+
+def _first_quoted(names: Sequence[str]) -> str:
+    more = len(names) - MOST_TAKES
+    return _quoted(names[:MOST_TAKES]) + (f" and {more} more" if more > 0 else "")
 
 
 def damage_doubts(found: Sequence[Finding]) -> list[str]:

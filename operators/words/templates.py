@@ -143,6 +143,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     ),
     faults.ClipNotOpened: "The recording {path} cannot be opened ({problem}); check its name and "
     "whether it may be read.",
+    faults.NotInFile: "The recording {path} has no {what} “{name}”; name one that it has: "
+    "{known:names}.",
     faults.OptionNotTaken: "“{option}” does not count for {path}, as files of this kind tell it "
     "themselves or do not need it; leave it out. What they tell wrongly is set under “[recording]” "
     "in a recipe, such as “time_scale” for a wrong rate.",

@@ -28,6 +28,7 @@ from .recordings import NonFiniteKey as NonFiniteKey
 from .recordings import NoSpine as NoSpine
 from .recordings import NotBetweenFrames as NotBetweenFrames
 from .recordings import NothingLeft as NothingLeft
+from .recordings import NotInFile as NotInFile
 from .recordings import NotJoined as NotJoined
 from .recordings import NotMirrored as NotMirrored
 from .recordings import NotPutIn as NotPutIn

@@ -204,6 +204,16 @@ class ClipNotOpened(Fault):
 
 
 @dataclass
+class NotInFile(Fault):
+    """What a motion file was asked for by name and does not hold. what: "armature" or "take"."""
+
+    path: str
+    what: str
+    name: str
+    known: tuple[str, ...]
+
+
+@dataclass
 class OptionNotTaken(Fault):
     """An option of the command line that does not count for files of this kind."""
 

@@ -6,12 +6,25 @@ from ..problem import MassTable
 
 
 @dataclass(frozen=True)
+class ChosenTake:
+    """What was read of a file that may hold several armatures, each with several takes.
+
+    armatures: others that move. takes: the armature's others. Neither where one was asked for.
+    """
+
+    armature: str
+    take: str
+    armatures: tuple[str, ...] = ()
+    takes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Origin:
     """Source file of a recording and how it was read; None where nothing had to be settled.
 
     unit_m: m per unit of length in the file. up: its axis that points up. bind_frames: at its
     beginning, which hold the rest pose and are left out. miscount: frames that the file
-    announces, and that it holds, where these are more.
+    announces, and that it holds, where these are more. chosen: what of it is read.
     """
 
     clip: str
@@ -21,6 +34,7 @@ class Origin:
     up_guessed: bool = False
     bind_frames: int = 0
     miscount: tuple[int, int] | None = None
+    chosen: ChosenTake | None = None
 
 
 @dataclass(frozen=True)

@@ -121,7 +121,15 @@ def test_the_key_goes_by_names_and_contents_and_not_by_folders() -> None:
         replace(cell, recipe_sha256="1"),
     ]
     keys = {each.key(SETTINGS) for each in (cell, *others)}
-    assert len(keys | {cell.key(replace(SETTINGS, check=True))}) == 5
+    settings = [replace(SETTINGS, check=True), replace(SETTINGS, take="jump")]
+    assert len(keys | {cell.key(each) for each in settings}) == 6
+
+
+def test_settings_that_came_later_leave_the_cells_of_batches_without_them_as_they_are() -> None:
+    assert not {"armature", "take"} & SETTINGS.as_record().keys()
+    chosen = replace(SETTINGS, armature="Hero", take="jump")
+    assert BatchSettings.of_record(chosen.as_record()) == chosen
+    assert BatchSettings.of_record(SETTINGS.as_record()) == SETTINGS
 
 
 def test_a_result_is_read_as_it_was_written() -> None:
