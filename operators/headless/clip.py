@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 from ...bridge.formats.acclaim import clip_files
 from ...solver.analysis.take import require_inside
-from ...solver.data.faults import ClipNotOpened, MirroredInBlender, NoArmature
+from ...solver.data.faults import ClipNotOpened, MirroredInBlender, NoArmature, NotInFile
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import BEYOND, Recording
-from ...solver.data.reports.recording import Origin
+from ...solver.data.reports.recording import ChosenTake, Origin
 from ...solver.doctor.examination.repair import check_trim, left_after, trimmed
 from ...solver.doctor.repairs import Repairs
 from ...solver.skeleton.bind_pose import bind_frames
@@ -37,7 +37,7 @@ class Clip:
     """A motion file, or a .blend with a recorded armature, and what it does not tell.
 
     unit: m per unit of length. up: the axis that points up. rate: Hz, of an AMC or BVH file. asf:
-    an AMC file's skeleton. armature, take: which of an FBX file's.
+    an AMC file's skeleton. armature, take: which of an FBX file's; the former also of a .blend's.
     """
 
     path: Path
@@ -122,7 +122,7 @@ def load(
 
 def _import(clip: Clip) -> tuple[bpy.types.Object, Origin]:
     if clip.path.suffix.lower() == SCENE:
-        return _open(clip.path), Origin(clip.path.name)
+        return _open(clip.path, clip.armature)
     import bpy
 
     from ...bridge.accessors import current_action, present
@@ -152,8 +152,9 @@ def _import(clip: Clip) -> tuple[bpy.types.Object, Origin]:
     )
 
 
-def _open(path: Path) -> bpy.types.Object:
-    """The armature of a .blend: the active one, else the only one that carries an action."""
+def _open(path: Path, wanted: str | None) -> tuple[bpy.types.Object, Origin]:
+    """The armature of a .blend that is wanted, else the active one, else the only one that carries
+    an action."""
     import bpy
 
     from ...bridge.accessors import current_action, current_scene, present
@@ -166,14 +167,25 @@ def _open(path: Path) -> bpy.types.Object:
     except RuntimeError as error:
         problem = "Blender does not read it" if path.is_file() else "there is no such file"
         raise ClipNotOpened(str(path), problem) from error
+    armatures = {o.name: o for o in current_scene().objects if o.type == "ARMATURE"}
+    animated = sorted(name for name, each in armatures.items() if current_action(each) is not None)
     active = present(bpy.context.view_layer).objects.active
-    if active is not None and active.type == "ARMATURE":
-        return _recorded(active)
-    armatures = [o for o in current_scene().objects if o.type == "ARMATURE"]
-    animated = [o for o in armatures if current_action(o) is not None]
-    if len(animated) != 1:
+    if wanted is not None:
+        if wanted not in armatures:
+            raise NotInFile(str(path), "armature", wanted, tuple(animated))
+        name = wanted
+    elif active is not None and active.name in armatures:
+        name = active.name
+    elif len(animated) == 1:
+        (name,) = animated
+    else:
         raise NoArmature(path.name)
-    return _recorded(animated[0])
+    armature, others = _recorded(armatures[name]), [each for each in animated if each != name]
+    action = current_action(armature)
+    take = "" if action is None else action.name
+    return armature, Origin(
+        path.name, chosen=ChosenTake(name, take, () if wanted else tuple(others))
+    )
 
 
 def _recorded(armature: bpy.types.Object) -> bpy.types.Object:

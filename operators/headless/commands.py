@@ -103,7 +103,7 @@ def _add_clip_options(each: argparse.ArgumentParser, *, optional: bool) -> None:
     )
     each.add_argument("--asf", type=Path, metavar="FILE", help="an AMC file's skeleton")
     each.add_argument("--take", metavar="NAME", help="which, of an FBX file that holds several")
-    each.add_argument("--armature", metavar="NAME", help="whose motion, of such a file")
+    each.add_argument("--armature", metavar="NAME", help="whose motion, of such a file or a .blend")
     each.add_argument(
         *("--bone", "--bones"),
         type=_bone,
@@ -258,7 +258,7 @@ _TAKEN = {
     ".bvh": ("unit", "up", "rate"),
     ".amc": ("unit", "up", "rate", "asf"),
     ".fbx": ("unit", "armature", "take"),
-    ".blend": (),
+    ".blend": ("armature",),
 }
 
 

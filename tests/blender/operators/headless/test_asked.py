@@ -144,6 +144,25 @@ def test_a_blend_is_a_clip_too(clip: Path, tmp_path: Path, capsys) -> None:
     assert "Left toe 2" in printed
 
 
+def test_of_a_blend_with_two_characters_the_one_that_is_read_is_named_and_may_be_chosen(
+    clip: Path, tmp_path: Path, capsys
+) -> None:
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    first = import_clip(clip).armature
+    first.name = "Runner"
+    second = import_clip(clip).armature  # which is active then
+    second.name = "Jumper"
+    path = tmp_path / "two.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    capsys.readouterr()
+    assert main(["doctor", str(path)]) == 0
+    assert "“Jumper” is read, and not “Runner”" in capsys.readouterr().out
+    assert main(["doctor", str(path), "--armature", "Runner"]) == 0
+    assert "is read" not in capsys.readouterr().out
+    assert main(["doctor", str(path), "--armature", "Nobody"]) == 2
+    assert "name one that it has: Jumper, Runner" in capsys.readouterr().err
+
+
 def test_the_starter_recipe_is_valid_and_names_the_landing(
     clip: Path, tmp_path: Path, capsys
 ) -> None:
