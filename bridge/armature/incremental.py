@@ -1,4 +1,4 @@
-"""Cooperative time slicing: long work on the scene as a generator that yields every 20 ms.
+"""Cooperative time slicing: long work on the scene as a generator that yields every 20 to 60 ms.
 
 Between two slices Blender does what else it has to; each leaves the scene as the artist had it.
 Whoever has no interface to keep alive completes them at once.
@@ -6,8 +6,9 @@ Whoever has no interface to keep alive completes them at once.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Callable, Generator, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextvars import ContextVar
 from functools import partial
 from time import perf_counter
 from typing import TypeVar
@@ -23,17 +24,33 @@ Incremental = Generator[float | None, None, T]
 """Long work in parts; where it knows, it yields how much is done, 0 to 1."""
 
 SLICE_S = 0.02
+LONGEST_SLICE_S = 0.06  # where it costs as much to go back as the frames do
+GOING_BACK = 4.0  # times what that costs is added: entering costs as much, frames twice that
 FEWEST_FRAMES = 4  # a slice; each costs one frame more, to go back
+
+_nobody_waits = ContextVar("_nobody_waits", default=False)
+
+
+@contextmanager
+def at_once() -> Iterator[None]:
+    """Context in which one slice has all frames, for each slice that lets an armature perform
+    another action has Blender copy all keys of both, which takes as long as 40 frames."""
+    token = _nobody_waits.set(True)
+    try:
+        yield
+    finally:
+        _nobody_waits.reset(token)
 
 
 def complete(slices: Incremental[T]) -> T:
     """Run all slices at once: their result."""
-    while True:
-        try:
-            next(slices)
-        except StopIteration as end:
-            result: T = end.value
-            return result
+    with at_once():
+        while True:
+            try:
+                next(slices)
+            except StopIteration as end:
+                result: T = end.value
+                return result
 
 
 def in_slices(
@@ -46,12 +63,15 @@ def in_slices(
     found: list[T] = []
     at, count = 0, FEWEST_FRAMES
     while at < len(frames):
+        count = len(frames) if _nobody_waits.get() else count
         began = perf_counter()
         with showing():
             found.append(look(frames[at : at + count]))
+            looked = perf_counter()
         at += count
-        spent = perf_counter() - began
-        count = max(FEWEST_FRAMES, int(count * min(SLICE_S / spent, 8.0)))
+        ended = perf_counter()
+        wanted = min(SLICE_S + GOING_BACK * (ended - looked), LONGEST_SLICE_S)
+        count = max(FEWEST_FRAMES, int(count * min(wanted / (ended - began), 8.0)))
         yield min(at / len(frames), 1.0)
     return found
 

@@ -7,6 +7,7 @@ from typing import TypeVar
 import bpy
 
 from ...bridge.accessors import present
+from ...bridge.armature.incremental import at_once
 from ...bridge.repairs.unreadable import unreadable_texts
 from ...bridge.worker_client import shared
 from ...bridge.worker_requests import PendingRequest
@@ -52,10 +53,11 @@ class TaskOperator(ReadyOperator, FaultyOperator):
         task = self.task(context)
         finished = False
         try:
-            while True:
-                job = next(task)
-                if isinstance(job, PendingRequest):
-                    job.wait()
+            with at_once():
+                while True:
+                    job = next(task)
+                    if isinstance(job, PendingRequest):
+                        job.wait()
         except StopIteration as end:
             finished = True
             self._finish(end.value)
