@@ -3,8 +3,9 @@
 from contextlib import ExitStack
 
 import bpy
+from bpy.app.handlers import persistent
 
-from ..accessors import ATTRIBUTE
+from ..accessors import ATTRIBUTE, attached, snapshot
 from .settings import CARRIERS, CLASSES
 
 _ensured = ExitStack()  # what takes back what `ensure_groups` did
@@ -20,6 +21,31 @@ def attach_groups(undo: ExitStack) -> None:
         )
         setattr(carrier, ATTRIBUTE, group_of)
         undo.callback(delattr, carrier, ATTRIBUTE)
+    # Opened files too: automatic saves, of which nobody is told, come before the artist's.
+    for handlers in (bpy.app.handlers.save_pre, bpy.app.handlers.load_post):
+        handlers.append(complete_overrides)
+        undo.callback(handlers.remove, complete_overrides)
+
+
+@persistent  # type: ignore[untyped-decorator]  # any, in the stubs
+def complete_overrides(*_of_handlers: object) -> None:
+    """Library overrides and what they override have the same groups, when a file is saved.
+
+    Of a group that only one of them has, Blender 5 saves that it is another one instead of its
+    fields, and cannot read that again: all of it would be lost.
+    """
+    for thing in bpy.data.objects:
+        override = thing.override_library
+        if thing.library is None and override is not None and snapshot(thing):
+            for each in filter(None, (thing, override.reference)):
+                _make_groups(attached(each))
+
+
+def _make_groups(group: bpy.types.PropertyGroup) -> None:
+    """Have a group all groups within it, which Blender makes when they are asked for."""
+    for each in group.bl_rna.properties:
+        if each.type == "POINTER":
+            getattr(group, each.identifier)
 
 
 def ensure_groups() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from hangtime.bridge.accessors import current_action
+from hangtime.bridge.accessors import current_action, snapshot
 from hangtime.bridge.armature.keys_digest import keys_digest
 from hangtime.bridge.armature.poses import sample
 
@@ -83,3 +83,31 @@ def test_an_overrides_linked_recording_is_adapted_and_its_result_saved(
     assert current_action(again).library is not None
     assert np.abs(sample(again, frames).matrices - shown).max() > 0.01
     assert library.read_bytes() == before
+
+
+@pytest.mark.parametrize("with_settings", [True, False], ids=["set up", "a rig alone"])
+def test_all_settings_of_an_override_are_there_when_its_file_is_opened_again(
+    jump: bpy.types.Object, tmp_path: Path, *, with_settings: bool
+) -> None:
+    jump.property_unset("hangtime")
+    if with_settings:  # but without the groups within them
+        jump.hangtime.mass = 60.0
+    assert bool(snapshot(jump)) == with_settings
+    override = overridden(jump, tmp_path / "library.blend")
+    ours = override.hangtime
+    ours.use_range, ours.height, ours.loop.root = True, 1.6, "IN_PLACE"
+    ours.result.after, ours.result.blend_in = "RETURN", 7
+    ours.constraints.add().name = "Elbow"
+    for _ in range(2):  # an opened file is saved as well as a new one
+        mine = str(tmp_path / "shot.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=mine)
+        saved = bpy.context.view_layer.objects.active.override_library
+        paths = {each.rna_path for each in saved.properties}
+        assert not paths & {"hangtime", "hangtime.result", "hangtime.result_keys", "hangtime.loop"}
+        bpy.ops.wm.open_mainfile(filepath=mine)
+        kept = bpy.context.view_layer.objects.active.hangtime
+        assert kept.mass == (60.0 if with_settings else 70.0)
+        assert (kept.use_range, kept.height) == (True, pytest.approx(1.6))
+        assert (kept.result.after, kept.result.blend_in) == ("RETURN", 7)
+        assert (kept.loop.root, kept.result_keys.on) == ("IN_PLACE", "EVERY_FRAME")
+        assert [row.name for row in kept.constraints] == ["Elbow"]
