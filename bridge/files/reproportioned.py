@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import bpy
 import numpy as np
 
 from ...solver.arrays import FloatArray
+from ...solver.data.contacts import ContactSchedule
 from ...solver.data.recording import PoseTrack, Recording
 from ..armature.read import read_recording
 from ..formats.motion_clip import from_recording
@@ -31,3 +33,9 @@ def build_reproportioned(
     }
     rotations = track.rotations @ np.stack([turn[bone] for bone in track.bones])
     return armature, replace(track, rotations=rotations), turn
+
+
+def in_new_axes(schedule: ContactSchedule, turns: Mapping[str, FloatArray]) -> ContactSchedule:
+    """Contacts of a recording on an armature that was built for it; turns: as built with it."""
+    contacts = (replace(c, offset=turns[c.bone].T @ c.offset) for c in schedule.contacts)
+    return replace(schedule, contacts=tuple(contacts))

@@ -34,6 +34,7 @@ if TYPE_CHECKING:  # as in clip.py
     from ...bridge.controls.kept import KeptByControls
     from ...bridge.takes.plan import AdaptedMotion
     from ...bridge.takes.span import WrittenTake
+    from ...solver.data.contacts import ContactSchedule
     from ...solver.data.reports.keys import MissedContact
 
 EXPORTED = "adapted"  # file name without ending
@@ -83,6 +84,17 @@ def require_place(clip: LoadedClip, wanted: ResultOptions, loop: LoopOptions | N
 
 
 @dataclass(frozen=True)
+class _Written:
+    """An action and who performs it. schedule: its contacts, in the performer's axes. take: what
+    was done to it where it is the whole one; or how near controls come to a loop."""
+
+    performer: bpy.types.Object
+    action: bpy.types.Action
+    schedule: ContactSchedule
+    take: WrittenTake | KeptByControls | None
+
+
+@dataclass(frozen=True)
 class Outputs:
     """Writes the files of one result; every method raises OutputNotWritable.
 
@@ -119,8 +131,9 @@ class Outputs:
         with self.stages.stage("Writing keyframes"):
             recorded = present(current_action(self.clip.armature))
             adopt_strip(self.clip.armature, recorded)
-            performer, adapted, written = self._write_actions("adapted")
-            missed = self._missed(performer)
+            made = self._write_actions("adapted")
+            performer, adapted, written = made.performer, made.action, made.take
+            missed = self._missed(made)
             rig = written.rig if isinstance(written, WrittenTake) else None
             keys = self._choose_keys(performer, adapted, recorded, rig)
             self._mark_contacts(performer, adapted)
@@ -172,7 +185,7 @@ class Outputs:
         """The report, and the best motion that was found."""
         written = None
         if self.result.adaptation.reached > 0.0:
-            _, _, written = self._write_actions("best found, short of the goal")
+            written = self._write_actions("best found, short of the goal").take
             self._build_scene()
             _save_blend(self.outbox.path(BEST))
         self._write_report(self._report(), written)
@@ -181,16 +194,15 @@ class Outputs:
         """With the stages that have ended."""
         return self.result.report(self.clip.origin, self.stages.done)
 
-    def _missed(self, performer: bpy.types.Object) -> tuple[MissedContact, ...]:
-        """Contacts that the keys which a performer shows have elsewhere than solved; none of a loop
-        whose travel is left out."""
+    def _missed(self, made: _Written) -> tuple[MissedContact, ...]:
+        """Contacts that the keys which the performer shows have elsewhere than solved; none of a
+        loop whose travel is left out."""
         from ...bridge.armature.incremental import complete
         from ...bridge.constraints.standing import missed_contacts
 
         if self.loop is not None and self.loop.root is LoopRoot.IN_PLACE:
             return ()
-        result = self.result
-        return complete(missed_contacts(performer, result.schedule, result.traces()))
+        return complete(missed_contacts(made.performer, made.schedule, self.result.traces()))
 
     def _write_report(self, report: Report, written: WrittenTake | KeptByControls | None) -> None:
         from ..words.take_text import take_lines, take_record
@@ -198,28 +210,27 @@ class Outputs:
         records: dict[str, object] = {} if written is None else {"take": take_record(written)}
         write_report(report, self.outbox, records, take_lines(written))
 
-    def _write_actions(
-        self, called: str
-    ) -> tuple[bpy.types.Object, bpy.types.Action, WrittenTake | KeptByControls | None]:
+    def _write_actions(self, called: str) -> _Written:
         """The adapted action on the armature, or on one of its own where limbs were changed; the
-        recording's on a copy beside it. Returns who performs the action, the action, and what was
-        done to the take where it is the whole one, or how near controls come to a loop."""
+        recording's on a copy beside it."""
         from mathutils import Vector
 
         from ...bridge.accessors import current_action, present
         from ...bridge.armature.fcurves import slot_identifier
         from ...bridge.armature.incremental import complete
         from ...bridge.armature.write import side_by_side, write_action
-        from ...bridge.files.reproportioned import build_reproportioned
+        from ...bridge.files.reproportioned import build_reproportioned, in_new_axes
         from ...bridge.loops.write_loop import Loop, write_loop
         from ...bridge.takes.write_result import write_result
 
         recorded = present(current_action(self.clip.armature))
         armature, track = self.clip.armature, self.result.track
+        schedule = self.result.schedule
         name = f"{recorded.name} {called}"
         written: WrittenTake | KeptByControls | None = None
         if self.result.subject.problem.requests.body.limbs:
-            armature, track, _ = build_reproportioned(self.result.recording, track)
+            armature, track, turns = build_reproportioned(self.result.recording, track)
+            schedule = in_new_axes(schedule, turns)
             adapted = write_action(armature, track, name=name)
             self.clip.armature.location += Vector(self._beside())  # it performs the recording
         elif self.loop is not None:
@@ -232,7 +243,7 @@ class Outputs:
             side_by_side(armature, recorded, adapted, offset=self._beside())
         first, last = adapted.frame_range.to_tuple()
         _show_frames(round(first), round(last), alone=not self.clip.in_scene)
-        return armature, adapted, written
+        return _Written(armature, adapted, schedule, written)
 
     def _mark_contacts(self, performer: bpy.types.Object, adapted: bpy.types.Action) -> None:
         """By markers and channels, as is asked for."""

@@ -18,7 +18,7 @@ from ...bridge.constraints.status import write_status
 from ...bridge.controls.aimed import aimed_in, without
 from ...bridge.controls.driven import is_driven
 from ...bridge.controls.held import held_bones
-from ...bridge.files.reproportioned import build_reproportioned
+from ...bridge.files.reproportioned import build_reproportioned, in_new_axes
 from ...bridge.loops.write_loop import (
     Loop,
     write_loop_incrementally,
@@ -257,7 +257,7 @@ def _write_other(
     recording: Recording, answer: Adapted, armature: bpy.types.Object
 ) -> Incremental[str]:
     """The answer on an armature of its own, for the artist's keeps its proportions."""
-    other, track, _ = build_reproportioned(recording, answer.track)
+    other, track, turns = build_reproportioned(recording, answer.track)
     other.name = f"{armature.name} changed"
     source = present(recorded_action(armature))
     action = write_action(other, track, name=free_name(root_of(source).name, "adapted"))
@@ -267,7 +267,8 @@ def _write_other(
     options = result_options(settings_of(armature))
     left_out = [] if options.after is After.CUT else [ALONE.format(other.name)]
     _note(armature, other, action, answer, left_out)
-    yield from _tell_missed(armature, other, action, answer)
+    turned = replace(answer, schedule=in_new_axes(answer.schedule, turns))
+    yield from _tell_missed(armature, other, action, turned)
     yield from write_keys(armature, other, action, answer)
     mark_contacts(other, action, answer, options)
     return f"Made the armature {other.name}, which performs the adapted motion"
