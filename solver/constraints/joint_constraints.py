@@ -14,7 +14,7 @@ from ..data.requests import (
 )
 from ..numerics.rotations import axis_rotation, perpendicular, unit
 from ..transcription.constraint import Bounds, Constraint
-from ..transcription.constraint_functions import BodyOrientation, JointAngles
+from ..transcription.constraint_functions import BodyOrientation, JointAngles, OrientationDistance
 from ..transcription.joint_measures import (
     BendAngle,
     ConeAngle,
@@ -118,7 +118,8 @@ def _fixed_angles(which: IntArray, posed: FloatArray, context: EvaluationContext
 
 
 def orientation_constraint(request: OrientationRequest, context: EvaluationContext) -> Constraint:
-    """Turn about the vertical, then tilt about the leftward axis, of a body against the fit.
+    """Turn about the vertical, then tilt about the leftward axis that turned with it, of a body
+    against the fit.
 
     Raises StillBone, UnknownPhaseIn, BadTiming.
     """
@@ -133,7 +134,9 @@ def orientation_constraint(request: OrientationRequest, context: EvaluationConte
         posed = context.reference.pose(context.reference_times(times))
         return np.asarray(tilted @ posed.rotations[:, body])
 
-    slack = np.full(3, request.slack)
-    return Constraint(
-        request.name, BodyOrientation(body, wanted), Bounds(-slack, slack), *span, per_span=1
-    )
+    function = BodyOrientation(body, wanted)
+    if request.slack == 0.0:
+        none = np.zeros(3)
+        return Constraint(request.name, function, Bounds(none, none), *span, per_span=1)
+    within = Bounds.scalar(None, request.slack)
+    return Constraint(request.name, OrientationDistance(function), within, *span, per_span=1)

@@ -187,7 +187,8 @@ class OrientationRequest:
     """Orientation constraint on a bone, in the world.
 
     turn: rad about the world's vertical, against the fit's own orientation at each instant; tilt:
-    rad about the travel's left axis (forwards positive) after it. slack: rad by which it may miss.
+    rad after it about the travel's left axis, turned likewise (forwards positive). slack: rad, of
+    the whole turn by which it may miss.
     """
 
     name: str

@@ -41,9 +41,11 @@ def jumps(fit: Fit, motion: Motion, schedule: ContactSchedule) -> Iterator[JumpR
         before = _flight_summary(fit.motion, flight, fit.schedule.phases, floor)
         adapted = _flight_summary(motion, now, schedule.phases, floor)
         deeper = None
-        crouches = (before.crouch_pelvis_height_m, adapted.crouch_pelvis_height_m)
-        if crouches[0] is not None and crouches[1] is not None:
-            deeper = 100.0 * (crouches[0] - crouches[1])
+        stood, stands = _before(flight, fit.schedule.phases), _before(now, schedule.phases)
+        if stood is not None and stands is not None:
+            sunk = _lowest(fit.motion, stood) - _lowest(motion, stands)
+            risen = _risen(_stood_on(fit.motion, stood), _stood_on(motion, stands))
+            deeper = 100.0 * (sunk + risen)
         yield JumpReport(
             flight=flight.name,
             take_off_s=now.start,
@@ -56,6 +58,23 @@ def jumps(fit: Fit, motion: Motion, schedule: ContactSchedule) -> Iterator[JumpR
             crouch_deeper_cm=deeper,
             apex_higher_cm=100.0 * (adapted.apex_pelvis_height_m - before.apex_pelvis_height_m),
         )
+
+
+def _risen(before: dict[str, float], after: dict[str, float]) -> float:
+    """By how much, m, what is stood on is higher, of heights by contacts' names."""
+    risen = [after[name] - height for name, height in before.items() if name in after]
+    return float(np.mean(risen)) if risen else 0.0
+
+
+def _stood_on(motion: Motion, phase: Phase) -> dict[str, float]:
+    """Heights, m, world, of the contacts that touch in a phase, by their names, amid it."""
+    heights = {}
+    for each in motion.transcription.contacts:
+        first, last = max(each.contact.start, phase.start), min(each.contact.end, phase.end)
+        if first < last:
+            middle = np.array([0.5 * (first + last)])
+            heights[each.contact.name] = float(motion.contact_points(middle)[0, each.point, 2])
+    return heights
 
 
 def lifted_flights(setup: Setup) -> Iterator[LiftedFlight]:
@@ -86,12 +105,18 @@ def _flight_summary(
     motion: Motion, flight: Phase, phases: Sequence[Phase], floor: float
 ) -> FlightSummary:
     """floor: m, world."""
-    before = [phase for phase in phases if phase.end <= flight.start + 1e-9]
+    stance = _before(flight, phases)
     return FlightSummary(
-        crouch_pelvis_height_m=_lowest(motion, before[-1]) - floor if before else None,
+        crouch_pelvis_height_m=None if stance is None else _lowest(motion, stance) - floor,
         apex_pelvis_height_m=apex(motion, flight) - floor,
         flight_length_m=_length(motion, flight),
     )
+
+
+def _before(flight: Phase, phases: Sequence[Phase]) -> Phase | None:
+    """The phase before a flight; None where the clip begins with it."""
+    before = [phase for phase in phases if phase.end <= flight.start + 1e-9]
+    return before[-1] if before else None
 
 
 def flights(fit: Fit) -> list[Phase]:

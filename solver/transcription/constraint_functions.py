@@ -5,7 +5,7 @@ Those of a single joint's rotation are in joint_measures.py.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,6 +14,8 @@ from ..body.kinematics import BodyPoint
 from ..data.row_kinds import RowKind
 from ..numerics.rotations import cross_matrix, rotation_vector
 from .sampling import Channel, ChannelJacobian, State
+
+NO_TURN = 1e-12  # rad
 
 TimeFunction = Callable[[FloatArray], FloatArray]  # of instants (U,) s
 
@@ -67,6 +69,26 @@ class BodyOrientation:
     def _error(self, state: State) -> FloatArray:
         wanted = self.wanted(state.instants.times)
         return np.asarray(np.swapaxes(wanted, 1, 2) @ state.pose.rotations[:, self.body])
+
+
+@dataclass(frozen=True)
+class OrientationDistance:
+    """Angle (U, 1) of the turn from a wanted orientation to a body's, rad: their geodesic distance.
+
+    At 0, where it has no gradient, the gradient is 0.
+    """
+
+    orientation: BodyOrientation
+    kind: RowKind = RowKind.ORIENTATION
+
+    def value(self, state: State) -> FloatArray:
+        return np.linalg.norm(self.orientation.value(state), axis=1, keepdims=True)
+
+    def jacobians(self, state: State) -> list[ChannelJacobian]:
+        off = self.orientation.value(state)
+        axis = off / np.maximum(np.linalg.norm(off, axis=1, keepdims=True), NO_TURN)
+        (turning,) = self.orientation.jacobians(state)
+        return [replace(turning, matrix=axis[:, None] @ turning.matrix)]
 
 
 def _inverse_left_jacobian(turn: FloatArray) -> FloatArray:

@@ -14,6 +14,7 @@ from hangtime.solver.transcription.constraint import ConstraintFunction
 from hangtime.solver.transcription.constraint_functions import (
     BodyOrientation,
     JointAngles,
+    OrientationDistance,
     PeakForce,
     PointPosition,
 )
@@ -196,6 +197,9 @@ def functions(t: Transcription, body: int) -> dict[str, ConstraintFunction]:
         "twist from a pose": TwistAngle(joint, along, zero=rotation_matrix(wanted)),
         "place": PointPosition(point, moving_place, slope),
         "orientation": BodyOrientation(body, constant(rotation_matrix(wanted))),
+        "orientation's distance": OrientationDistance(
+            BodyOrientation(body, constant(rotation_matrix(wanted)))
+        ),
         "angles": JointAngles(mine, constant(0.1 * mine)),
         "peak": PeakForce(np.arange(t.layout.n_points)),
         "torques": TorqueFunction(character, t.points, mine),
