@@ -75,8 +75,12 @@ def _exported(folder: Path, export: ExportOptions) -> Path:
 
 
 def require_place(clip: LoadedClip, wanted: ResultOptions, loop: LoopOptions | None) -> None:
-    """Before a solve takes its seconds. Raises NoNewSlot."""
+    """Before a solve takes its seconds. Raises NoNewSlot, NoRootBone."""
+    from ...bridge.loops.write_loop import root_bone
     from ...bridge.takes.write_result import require_slot
+
+    if loop is not None and loop.root is LoopRoot.ROOT_BONE:
+        root_bone(clip.armature, clip.subject.analysis.performance.character.bodies[0].bone)
 
     apart = loop is not None or clip.subject.problem.requests.body.limbs
     if wanted.written_as is WrittenAs.SLOT and not apart:  # those are actions of their own

@@ -26,7 +26,9 @@ SAMPLE_RATE = 1000.0  # Hz
 FINE_RATE = 5000.0  # Hz, at a contact's ends, where points may be fast and load comes in no time
 EDGE = 1e-6  # s; forces jump at a contact's ends, which are looked at from inside
 LOADED = 0.05  # BW; a point with less may slip
-STANDING = 0.2  # BW; below, a shoe may slip a little, which is no need of friction
+# Of what the body weighs where it is, and BW, for where nothing weighs anything; below, a shoe may
+# slip a little, which is no need of friction.
+STANDING, LEAST_STANDING = 0.2, 0.02
 RISE_TIME = 0.002  # s, over which a loading rate is taken
 
 Item = CertificateItem
@@ -147,7 +149,7 @@ def _forces(motion: Motion, frame: FrameOf) -> Iterator[CertificateLine]:
     times = instants(motion.duration, SAMPLE_RATE)
     forces = motion.forces(times) / (motion.transcription.character.mass * STANDARD_GRAVITY)
     total = forces.sum(axis=1)
-    friction = friction_used(motion.transcription.contacts, times, forces)
+    friction = friction_of(motion, times, forces)
     size = np.linalg.norm(total, axis=1)
     step = round(RISE_TIME * SAMPLE_RATE)
     rate = (total[step:, 2] - total[:-step, 2]) / RISE_TIME
@@ -159,12 +161,19 @@ def _forces(motion: Motion, frame: FrameOf) -> Iterator[CertificateLine]:
         yield _line(item, float(values.max()), frame(float(times[values.argmax()])))
 
 
+def friction_of(motion: Motion, times: FloatArray, forces: FloatArray) -> FloatArray:
+    """`friction_used` of a motion's contacts."""
+    t = motion.transcription
+    return friction_used(t.contacts, times, forces, t.character.gravity / STANDARD_GRAVITY)
+
+
 def friction_used(
-    contacts: Sequence[PointContact], times: FloatArray, forces: FloatArray
+    contacts: Sequence[PointContact], times: FloatArray, forces: FloatArray, weight: float
 ) -> FloatArray:
     """(T,) coefficient that the forces of all contacts together need; 0 where they hardly carry.
 
-    forces: (T, P, 3) body weights. Grips, which need none, are left out.
+    forces: (T, P, 3) body weights. weight: likewise, of the body where it is. Grips, which need
+    none, are left out.
     """
     pressed, along = np.zeros(len(times)), np.zeros((len(times), 3))
     for each in contacts:
@@ -175,7 +184,7 @@ def friction_used(
             across = (mine * normals).sum(axis=1)
             pressed += across
             along += mine - across[:, None] * normals
-    carried = np.where(pressed > STANDING, pressed, np.inf)
+    carried = np.where(pressed > max(STANDING * weight, LEAST_STANDING), pressed, np.inf)
     return np.asarray(np.linalg.norm(along, axis=1) / carried)
 
 

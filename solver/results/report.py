@@ -49,7 +49,7 @@ from .certificate import (
     beside_recording,
     between_knots,
     certificate,
-    friction_used,
+    friction_of,
     loaded_drifts,
 )
 from .flight_summary import (
@@ -260,7 +260,7 @@ def _forces(adaptation: Adaptation) -> ForcesReport:
     times = instants(motion.duration, SAMPLE_RATE)
     forces = _forces_bw(motion, times)
     total = np.linalg.norm(forces.sum(axis=1), axis=1)
-    friction = friction_used(motion.transcription.contacts, times, forces)
+    friction = friction_of(motion, times, forces)
     peaks = []
     for phase in adaptation.setup.schedule.phases:
         inside = (times >= phase.start) & (times <= phase.end)

@@ -94,10 +94,11 @@ def test_friction_is_of_all_forces_together() -> None:
     times = np.array([contacts[0].contact.start + 0.01])
     forces = np.zeros((1, len(plain().motion.transcription.points), 3))
     forces[0, contacts[0].point] = [0.3, 0.4, 1.0]
-    assert friction_used(contacts, times, forces) == pytest.approx(0.5)
-    assert friction_used(contacts, times, 0.1 * forces) == 0.0  # hardly carries
+    assert friction_used(contacts, times, forces, 1.0) == pytest.approx(0.5)
+    assert friction_used(contacts, times, 0.1 * forces, 1.0) == 0.0  # hardly carries
+    assert friction_used(contacts, times, 0.1 * forces, 0.165) == pytest.approx(0.5)  # on the Moon
     grips = tuple(replace(each, friction=None) for each in contacts)
-    assert friction_used(grips, times, forces) == 0.0
+    assert friction_used(grips, times, forces, 1.0) == 0.0
 
 
 def test_torques_are_per_kilogram_of_the_worse_side() -> None:

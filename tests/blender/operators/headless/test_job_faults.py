@@ -14,6 +14,7 @@ from hangtime.operators.headless.cli import main
 from hangtime.solver.data.faults import OutsideKeys
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.tests.blender.helpers.jobs import EDIT, PLAIN, run
+from hangtime.tests.helpers.clips import mocap_path
 
 
 def one_line(capsys) -> str:
@@ -53,6 +54,12 @@ def test_frames_beyond_the_recording_are_told_with_those_that_it_has(
     assert "from frame 1 to 3" in one_line(capsys)
     with pytest.raises(OutsideKeys):
         read_clip(clip, MotionProblem(frames=(400.0, 700.0)))
+
+
+def test_a_loop_without_its_root_bone_is_refused_before_the_solve(tmp_path: Path, capsys) -> None:
+    recipe = 'frames = [28, 122]\n[loop]\nroot = "root bone"\n'
+    assert run(tmp_path, mocap_path("run_1.bvh"), recipe) == 2
+    assert "no bone above the pelvis" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("name", ["adapted.blend", "adapted.fbx"])
