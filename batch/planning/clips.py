@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Collection, Iterator, Sequence
-from glob import glob
+from glob import glob, has_magic
 from pathlib import Path
 
 from ...bridge.formats.acclaim import clip_files
@@ -44,8 +44,8 @@ def files_meant(word: str, suffixes: Collection[str], out: Path) -> list[Path]:
     """The files with such suffixes that a folder (with all below) or a pattern means, sorted; none
     of the batch's own folder. Raises WrongPlan."""
     path, own = Path(word), out.resolve()
-    inside = _below(path, own) if path.is_dir() else map(Path, glob(word, recursive=True))
     try:
+        inside = _below(path, own) if path.is_dir() else _matching(word, own)
         files = [p for p in inside if p.suffix.lower() in suffixes and p.is_file()]
     except OSError as error:
         raise WrongPlan(
@@ -61,6 +61,16 @@ def _below(folder: Path, own: Path) -> Iterator[Path]:
     for parent, folders, names in os.walk(folder, onerror=_raise):
         folders[:] = [name for name in folders if Path(parent, name).resolve() != own]
         yield from (Path(parent, name) for name in names)
+
+
+def _matching(pattern: str, own: Path) -> Iterator[Path]:
+    """The files that a pattern means. Raises OSError as `_below`, for the folders of a "**"."""
+    before, deep, _ = pattern.partition("**")
+    top = Path(os.path.dirname(before))
+    if deep and not has_magic(before) and top.is_dir():
+        for _ in _below(top, own):
+            pass
+    return map(Path, glob(pattern, recursive=True))
 
 
 def _raise(error: OSError) -> None:

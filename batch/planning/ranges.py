@@ -151,7 +151,7 @@ def _both_ways(values: Sequence[Value], table: Table) -> tuple[Value, ...]:
     numbers = [v for v in values if isinstance(v, int | float) and not isinstance(v, bool)]
     if len(numbers) < len(values):
         table.refuse("both_ways", "only numbers go both ways; take that away")
-    return *numbers, *(-number or 0 for number in numbers)
+    return *numbers, *(-number for number in numbers if number)
 
 
 def _plain(number: float) -> float:

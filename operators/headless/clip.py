@@ -167,25 +167,23 @@ def _open(path: Path, wanted: str | None) -> tuple[bpy.types.Object, Origin]:
     except RuntimeError as error:
         problem = "Blender does not read it" if path.is_file() else "there is no such file"
         raise ClipNotOpened(str(path), problem) from error
-    armatures = {o.name: o for o in current_scene().objects if o.type == "ARMATURE"}
-    animated = sorted(name for name, each in armatures.items() if current_action(each) is not None)
+    armatures = [o for o in current_scene().objects if o.type == "ARMATURE"]
+    animated = [o for o in armatures if current_action(o) is not None]
     active = present(bpy.context.view_layer).objects.active
     if wanted is not None:
-        if wanted not in armatures:
-            raise NotInFile(str(path), "armature", wanted, tuple(animated))
-        name = wanted
-    elif active is not None and active.name in armatures:
-        name = active.name
-    elif len(animated) == 1:
-        (name,) = animated
+        chosen = [o for o in armatures if o.name.casefold() == wanted.casefold()]
+        if not chosen:
+            known = tuple(sorted(o.name for o in armatures))
+            raise NotInFile(str(path), "armature", wanted, known)
     else:
-        raise NoArmature(path.name)
-    armature, others = _recorded(armatures[name]), [each for each in animated if each != name]
+        chosen = [o for o in armatures if o == active] or animated
+        if len(chosen) != 1:
+            raise NoArmature(path.name)
+    armature = _recorded(chosen[0])
+    others = () if wanted else tuple(sorted(o.name for o in animated if o != armature))
     action = current_action(armature)
     take = "" if action is None else action.name
-    return armature, Origin(
-        path.name, chosen=ChosenTake(name, take, () if wanted else tuple(others))
-    )
+    return armature, Origin(path.name, chosen=ChosenTake(armature.name, take, others))
 
 
 def _recorded(armature: bpy.types.Object) -> bpy.types.Object:

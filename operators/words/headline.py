@@ -15,8 +15,11 @@ from .messages import length, outcome, sentence
 MOST_NAMED = 3  # of the certificate's lines that fail, in a headline
 MOST_MISSED = 3  # contacts
 MOST_GIVEN_UP = 5  # of what is in each other, likewise
-NOT_FOUND = (Durations.NONE_FOUND, Durations.NOT_MET)
-AS_RECORDED = "Durations are as recorded, as none were found that go with the moved landing"
+AS_RECORDED = {
+    Durations.NONE_FOUND: "Durations are as recorded, as none were found for the moved landing",
+    Durations.NOT_MET: "Durations are as recorded, as with those for the moved landing not all "
+    "that is asked for was reached",
+}
 FITS = (CertificateItem.FIT_RMS, CertificateItem.FIT_WORST_FRAME)
 
 # What may be done about keys that do not show what was solved.
@@ -60,7 +63,7 @@ def headline(report: Report) -> list[str]:
     accepted = accepted_lines(report.needs)
     told = [nearness(report.fit_to_recording), *accepted, *lifted_lines(report)]
     told += given_up_lines(report)
-    told += [AS_RECORDED] if report.durations in NOT_FOUND else []
+    told += [AS_RECORDED[report.durations]] if report.durations in AS_RECORDED else []
     told += [line_told(line) for line in most_telling(report.failed)]
     missed = [missed_line(report.missed_contacts)] if report.missed_contacts else []
     return [*missed, _solved(report), *(f"  {line}" for line in told)]

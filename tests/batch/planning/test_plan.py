@@ -82,6 +82,8 @@ def test_a_folder_that_cannot_be_read_refuses_the_batch(
     monkeypatch.setattr(os, "scandir", refusing)
     with pytest.raises(WrongPlan, match=r"clips.second take cannot be read \(Permission denied\)"):
         library.plan()
+    with pytest.raises(WrongPlan, match=r"second take cannot be read"):
+        find_clips([str(library.folder / "clips" / "**" / "*.bvh")], library.out)
     assert not library.out.exists()
 
 
