@@ -15,6 +15,7 @@ from ..armature.fcurves import KeyTable, joined, linear_keys, put, table
 from .take_time import TakeTime
 
 EPSILON = 1e-4  # frames
+FEWEST_BAKED = 4  # keys side by side; two or three are a blink or a switch
 _CONSTANT = 0  # values of Blender's enums
 _FREE = 0
 _BEZIER = 2
@@ -30,7 +31,7 @@ def retime(curve: bpy.types.FCurve, time: TakeTime) -> None:
     keys = table(curve)
     at = keys["co"][:, 0].copy()
     before, after = at <= time.recorded[0], at >= time.recorded[-1]
-    whole = _whole_frames(at, time) if _is_baked(keys, ~(before | after)) else np.empty(0)
+    whole = _whole_frames(at, time) if _is_baked(curve, keys, ~(before | after)) else np.empty(0)
     shown = np.array([curve.evaluate(f) for f in time.to_recorded(whole)])
     for name in ("co", "handle_left", "handle_right"):
         frames = keys[name][:, 0].copy()
@@ -42,19 +43,25 @@ def retime(curve: bpy.types.FCurve, time: TakeTime) -> None:
         splice(curve, whole, shown, ends, FullTurns())
 
 
-def _is_baked(keys: KeyTable, changed: NDArray[np.bool_]) -> bool:
-    """Whether keys are on every whole frame among those whose place in time changes, none held."""
-    at = keys["co"][changed, 0]
-    whole = len(at) > 1 and bool(np.abs(at - np.round(at)).max() < EPSILON)
+def _is_baked(curve: bpy.types.FCurve, keys: KeyTable, changed: NDArray[np.bool_]) -> bool:
+    """Whether keys are on every whole frame among those whose place in time changes, and beside
+    them, none held; and nothing comes on top."""
+    inside = np.flatnonzero(changed)
+    if len(inside) < FEWEST_BAKED or len(curve.modifiers):
+        return False
+    at = keys["co"][max(inside[0] - 1, 0) : inside[-1] + 2, 0]
+    whole = bool(np.abs(at - np.round(at)).max() < EPSILON)
     each = whole and bool(np.diff(at).max() < 1.0 + EPSILON)
     return each and bool((keys["interpolation"][changed] != _CONSTANT).all())
 
 
 def _whole_frames(at: FloatArray, time: TakeTime) -> FloatArray:
-    """Of a result, where durations changed, as far as keys at a take's frames (n,) go."""
+    """Of a result, where durations changed, as far as keys at a take's frames (n,) go: to the frame
+    that shows the first, or the last, where the take goes on beyond it."""
     first, last = time.to_result(at[[0, -1]]).tolist()
-    first, last = max(first, time.result[0]), min(last, time.result[-1])
-    return np.arange(np.ceil(first - EPSILON), np.floor(last + EPSILON) + 1.0)
+    last = np.ceil(last - EPSILON) if at[-1] < time.recorded[-2] else np.floor(last + EPSILON)
+    begin = max(np.floor(first + EPSILON), np.ceil(time.result[0] - EPSILON))
+    return np.arange(begin, min(last, np.floor(time.result[-1] + EPSILON)) + 1.0)
 
 
 @dataclass(frozen=True)

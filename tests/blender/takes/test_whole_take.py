@@ -254,6 +254,17 @@ def test_curves_with_a_key_on_every_frame_have_one_on_every_frame_of_the_result(
     assert smile[inside, 1] == pytest.approx(shown[inside], abs=1e-4)
 
 
+def test_a_switch_of_two_keys_side_by_side_is_no_baked_curve() -> None:
+    armature = take()
+    armature.pose.bones["finger"]["smile"] = 0.0
+    for frame, value in ((10, 0.0), (45, 0.0), (46, 1.0), (90, 1.0)):
+        armature.pose.bones["finger"]["smile"] = value
+        armature.pose.bones["finger"].keyframe_insert('["smile"]', frame=frame)
+    write_result(armature, later(read_recording(armature)), name="Result")
+    smile = keys_of(armature)['pose.bones["finger"]["smile"]', 0]
+    assert smile[:, 1].tolist() == [0.0, 0.0, 1.0, 1.0]
+
+
 def test_markers_and_other_slots_go_along_in_time() -> None:
     armature = take()
     action = armature.animation_data.action
