@@ -82,8 +82,9 @@ class Plan:
     def between(self, channel: OwnedChannel) -> tuple[float, float]:
         """Frames strictly between which a channel's keys are replaced."""
         left, right = self.span.between
-        if channel.carries and len(self.rest_frames):
-            right = float(self.rest_frames[-1]) + (BESIDE if self.back is None else 0.0)
+        if channel.carries and self.moved is not None:
+            frames = np.concatenate([self.span.after, self.rest_frames])
+            right = max(right, float(frames[-1]) + (BESIDE if self.back is None else 0.0))
         return left, right
 
     def beside(self, channel: OwnedChannel) -> tuple[float | None, float | None]:
@@ -111,8 +112,10 @@ def planned(curves: CurveHolder, motion: AdaptedMotion) -> Plan:
             blend_out = min(blend_out, np.floor(start - recorded_last))
     if motion.ends:
         blend_out = 0.0
-    time = TakeTime.of(motion.times, max(blend_out, 1.0))
-    begin, end = time.to_result(np.array(key_span(list(curves.fcurves)))).tolist()
+    keyed = np.array(key_span(list(curves.fcurves)))
+    room = np.floor(keyed[1]) - recorded_last  # within which its end comes to a whole frame
+    time = TakeTime.of(motion.times, max(min(blend_out, room), 1.0))
+    begin, end = time.to_result(keyed).tolist()
     follows = not motion.ends and np.floor(end) > last
     moved = None if motion.moved is None or motion.moved.stays or not follows else motion.moved
     back = None

@@ -10,6 +10,7 @@ from ...solver.arrays import FloatArray
 from ...solver.data.stance_move import StanceMove
 from ..controls.control_rig import ControlRig
 from ..controls.kept import KeptByControls
+from .offsets import remaining
 from .take_time import TakeTime
 
 BLEND = 0.25  # s, the usual blend
@@ -22,7 +23,8 @@ class ResultSpan:
     """Frames of a result, on its own clock.
 
     first, last: the adapted ones. begin, end: the whole take's. blend_in, blend_out: frames over
-    which offsets fade; they may be cut off by the ends of the take.
+    which offsets fade. Where the take ends within them, its last frame keeps what has not faded:
+    in fewer frames bodies would go faster than in any other blend.
     """
 
     first: float
@@ -43,6 +45,13 @@ class ResultSpan:
         return float(left), float(right)
 
     @property
+    def kept(self) -> float:
+        """Share of the offset after the adapted frames that the take's last frame keeps."""
+        if not len(self.after):
+            return 0.0
+        return float(remaining(self.after[-1:] - self.last, self.blend_out)[0])
+
+    @property
     def before(self) -> FloatArray:
         """Whole frames that are blended in, (T,)."""
         return np.arange(np.ceil(self.between[0]), self.first)
@@ -54,7 +63,10 @@ class ResultSpan:
 
     @property
     def rest(self) -> FloatArray:
-        """Whole frames after these, (T,), the take's last one included."""
+        """Whole frames after these, (T,), the take's last one included; none where the take ends
+        within the blend, for there every body ends with the blend's last frame."""
+        if self.last + self.blend_out > self.end:
+            return np.empty(0)
         start = max(np.floor(self.between[1]), self.last) + 1.0
         return np.arange(start, np.ceil(max(self.end, self.last)) + 1.0)
 

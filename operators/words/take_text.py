@@ -41,6 +41,7 @@ def take_record(written: WrittenTake | KeptByControls) -> dict[str, object]:
         "take_frames": [min(span.begin, span.first), max(span.end, span.last)],
         "blend_in_frames": len(span.before),
         "blend_out_frames": len(span.after),
+        "kept_at_end": span.kept,
         "later_frames": written.later,
         "curves_applied": list(written.applied),
         "bones_held": list(written.held),
@@ -62,6 +63,11 @@ def _lines(written: WrittenTake, roles: Mapping[str, str]) -> Iterator[str]:
     blends = [f"{way} over {_frames(len(frames))}" for way, frames in ways if len(frames)]
     if blends:
         yield f"Blended {' and '.join(blends)}"
+    if round(100.0 * span.kept):
+        yield (
+            f"  The take ends within its blend of {_frames(round(span.blend_out))}: its last frame "
+            f"keeps {100.0 * span.kept:.0f}% of what the adapted ones are off the take"
+        )
     if written.later:
         way = "later" if written.later > 0 else "earlier"
         yield f"What follows comes {_frames(abs(written.later))} {way}"

@@ -208,6 +208,37 @@ def later(recording: Recording, **options: object) -> AdaptedMotion:
     return AdaptedMotion(track, times, None, replace(OPTIONS, **options))
 
 
+@pytest.mark.parametrize("moved", [None, MOVED])
+@pytest.mark.parametrize("longer", [0.0, 3.0, 3.4, 3.958, -3.5, -2.6])
+@pytest.mark.parametrize("room", [1, 2, 5, 7, 8, 9])
+def test_nothing_jumps_where_the_take_ends_in_or_beside_the_blend(
+    room: int, longer: float, moved: StanceMove | None
+) -> None:
+    """Whatever the durations: all bones go to one last frame, no faster than in a whole blend."""
+    armature = take()
+    for curve in fcurves.curves_of(armature):
+        fcurves.crop(curve, 1.0, LAST + room)
+    recording = read_recording(armature)
+    asked = motion(recording, moved)
+    count = int(np.floor(LAST + longer)) - FIRST + 1
+    rows = np.minimum(np.arange(count), LAST - FIRST)
+    track = PoseTrack(
+        FIRST + np.arange(count, dtype=float),
+        rigs.MOVING,
+        asked.track.rotations[rows],
+        asked.track.root_head[rows],
+    )
+    times = TimeMap((FIRST, 50.0, LAST), (FIRST, 50.0 + longer, LAST + longer))
+    _, written = write_result(armature, replace(asked, track=track, times=times), name="Result")
+    assert written is not None
+    ends = {float(keys[-1, 0]) for keys in keys_of(armature).values()}
+    assert ends == {LAST + room + written.later}
+    now = read_recording(armature)
+    steps = np.linalg.norm(np.diff(now.heads, axis=0), axis=2).max(axis=1)
+    usual = np.linalg.norm(np.diff(recording.heads, axis=0), axis=2).max()
+    assert steps[track.frames[-1].astype(int) - 1 :].max() < 1.3 * usual + 0.03
+
+
 @pytest.mark.parametrize("locked", [False, True])
 def test_what_follows_comes_as_much_later_as_the_frames_take_longer(locked: bool) -> None:
     armature = take()

@@ -1,5 +1,6 @@
 """What is said of the take around the adapted frames."""
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -26,6 +27,16 @@ def test_a_take_that_goes_on_as_it_was_says_so_in_a_line() -> None:
         "Take: frames 140 to 333 are adapted",
         "Blended in over 30 frames and out over 30 frames",
     ]
+
+
+def test_a_take_that_ends_within_the_blend_tells_what_it_keeps() -> None:
+    written = WrittenTake(replace(SPAN, end=339.0), None, None, SAME)
+    assert take_lines(written)[1:] == [
+        "Blended in over 30 frames and out over 6 frames",
+        "  The take ends within its blend of 30 frames: its last frame keeps 94% of what the "
+        "adapted ones are off the take",
+    ]
+    assert take_record(written)["kept_at_end"] == pytest.approx(0.942, abs=1e-3)
 
 
 def test_what_follows_is_told_as_the_artist_calls_the_stance() -> None:
