@@ -67,6 +67,18 @@ def whole_frames(
     return np.arange(min(before, start), max(after, end) + 1.0) + 0.0  # no frame is called -0
 
 
+def last_keyed(armature: bpy.types.Object) -> float:
+    """Last whole frame at which the action that an armature shows has a key, as the scene plays it.
+
+    Raises as `whole_frames`.
+    """
+    armature, curves = _require_animated(armature)
+    spans = np.array([curve.range() for curve in curves])
+    time = strip_time(armature, present(current_action(armature)))
+    last = spans.max() if time is None else time.clipped(spans.min(), spans.max())[1]
+    return float(np.floor(last + _EPSILON))
+
+
 def record(armature: bpy.types.Object, frames: FloatArray) -> Recording:
     """Record an armature that has an action at any frames (T,), whole or not.
 

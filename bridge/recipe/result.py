@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ...solver.data.faults import ReturnTooEarly
+from ...solver.data.faults import ReturnTooEarly, ReturnTooLate
 from ..recipe_syntax.items import Kind, choice, flag, number
 from ..recipe_syntax.table import NOT_NEGATIVE
 from ..rows.choices import After, ContactMarkers, WrittenAs
@@ -39,6 +39,15 @@ def require_return_after(options: ResultOptions, last: float) -> None:
     frame = options.return_frame
     if options.after is After.RETURN and frame is not None and frame <= last:
         raise ReturnTooEarly(frame, last)
+
+
+def require_return_within(options: ResultOptions, last: float, end: float) -> None:
+    """Raises ReturnTooLate where the take is to be back by a frame that it does not have: all of
+    the way back would be squeezed into what is left. last: the last that is adapted. end: the
+    take's."""
+    frame = options.return_frame
+    if options.after is After.RETURN and frame is not None and frame > end:
+        raise ReturnTooLate(frame, last, end)
 
 
 RESULT = Kind(

@@ -26,6 +26,24 @@ def carried(take: PoseTrack, move: StanceMove, shares: FloatArray) -> PoseTrack:
     )
 
 
+def slid(places: FloatArray, move: StanceMove, shares: FloatArray) -> float:
+    """How far shares (T,) of a move, as they change, take along what travels least, beyond what it
+    travels by itself; m. places: (T, B, 3) of bodies in the take, m.
+
+    That is how far standing feet slide on the way back.
+    """
+    travels = np.linalg.norm(np.diff(places[..., :2], axis=0), axis=2)
+    least = travels.argmin(axis=1)
+    at = places[1:][np.arange(len(least)), least] - move.pivot
+    before, now = (
+        np.einsum("tij,tj->ti", axis_rotation(2, move.turn * each), at)
+        + each[:, None] * np.array(move.shift)
+        for each in (shares[:-1], shares[1:])
+    )
+    steps = np.linalg.norm((now - before)[:, :2], axis=1)
+    return float(np.maximum(steps - travels.min(axis=1), 0.0).sum())
+
+
 def shares_of_return(
     frames: FloatArray, places: FloatArray, first: float, last: float
 ) -> FloatArray:

@@ -122,6 +122,7 @@ def planned(curves: CurveHolder, motion: AdaptedMotion) -> Plan:
     if moved is not None and options.after is After.RETURN:
         by = options.return_frame
         by = recorded_last + max(RETURN * rate, 2.0 * blend_out) if by is None else by
+        # A frame that is chosen is in the take (require_return_within); the usual one may not be.
         back = min(float(np.ceil(time.to_result(np.array([by]))[0])), np.floor(end))
         blend_out = min(blend_out, back - last)
     span = ResultSpan(first, last, begin, last if motion.ends else end, blend_in, blend_out)

@@ -77,6 +77,7 @@ class WrittenTake:
 
     time: where the take's frames are in the result. applied: bones whose curves had modifiers, or
     were muted, and are keys now. held: bones that moved joints within the body, and hold still now.
+    slide: m, by which the way back makes standing feet slide.
     controls: how near the bodies are that controls pose, and rig: these controls; None where bodies
     have keys of their own.
     """
@@ -89,6 +90,7 @@ class WrittenTake:
     held: tuple[str, ...] = ()
     controls: KeptByControls | None = None
     rig: ControlRig | None = None
+    slide: float = 0.0
 
     @property
     def later(self) -> int:

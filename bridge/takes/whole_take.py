@@ -30,7 +30,7 @@ from ..controls.control_rig import (
 from ..controls.driven import is_driven
 from ..controls.kept import kept_by
 from ..controls.targets import targets_of
-from .carry import carried, shares_of_return
+from .carry import carried, shares_of_return, slid
 from .key_splice import FullTurns, anchor, applied, retime, splice
 from .offsets import faded, seam_offset
 from .owned import OwnedChannel, carrying_bones, owned_by, owned_channels, steady_channels
@@ -76,7 +76,8 @@ def write_take(
             later = plain_poses(armature, curves, looked_at, plan.rest_frames)
         if later is None:
             later = yield from sample_incrementally(armature, plan.rest_frames, showing)
-    body, rest = _tracks(poses, later, plan, motion, carrying)
+    shares, slide = _shares(poses, later, plan, bones)
+    body, rest = _tracks(poses, later, plan, motion, (carrying, shares))
     yield None
     held: dict[OwnedChannel, FloatArray] = {}
     if rig is None:
@@ -111,7 +112,9 @@ def write_take(
         shown = yield from sample_incrementally(armature, plan.body_frames, showing)
         kept = kept_by(shown, targets_of(armature, poses, body), len(rig.used))
     bones_held = tuple(dict.fromkeys(channel.bone for channel in held))
-    return WrittenTake(plan.span, plan.moved, plan.back, plan.time, done, bones_held, kept, rig)
+    return WrittenTake(
+        plan.span, plan.moved, plan.back, plan.time, done, bones_held, kept, rig, slide
+    )
 
 
 def _controls(
@@ -166,16 +169,19 @@ def _apply_modifiers(
 
 
 def _tracks(
-    poses: Poses, later: Poses | None, plan: Plan, motion: AdaptedMotion, carrying: tuple[str, ...]
+    poses: Poses,
+    later: Poses | None,
+    plan: Plan,
+    motion: AdaptedMotion,
+    carrying: tuple[tuple[str, ...], FloatArray],
 ) -> tuple[PoseTrack, PoseTrack | None]:
     """Poses of all bodies at the body's frames, and of those that carry them at the frames that
-    follow."""
-    span = plan.span
+    follow. carrying: these, and the shares (T,) of the stance's move from the last adapted on."""
+    span, (carriers, shares) = plan.span, carrying
     take = _take_of(poses, motion.track.bones, plan.body_frames)
     rest = None
     if later is not None:
-        rest = _take_of(later, carrying, plan.rest_frames)
-    shares = _shares(poses, later, plan, motion.track.bones)
+        rest = _take_of(later, carriers, plan.rest_frames)
     following = _frames_from(take, span.last)
     count = len(following.frames)
     after = _rows(_carried(following, plan.moved, shares[:count]), slice(1, None))
@@ -190,16 +196,22 @@ def _tracks(
     return whole, rest
 
 
-def _shares(poses: Poses, later: Poses | None, plan: Plan, bodies: tuple[str, ...]) -> FloatArray:
-    """Shares of the stance's move from the last adapted frame on, (T,)."""
+def _shares(
+    poses: Poses, later: Poses | None, plan: Plan, bodies: tuple[str, ...]
+) -> tuple[FloatArray, float]:
+    """Shares of the stance's move from the last adapted frame on, (T,), and how far the way back
+    makes standing feet slide, m."""
     following = plan.body_frames >= plan.span.last
     frames = np.concatenate([plan.body_frames[following], plan.rest_frames])
     if plan.back is None:
-        return np.ones(len(frames))
+        return np.ones(len(frames)), 0.0
+    assert plan.moved is not None
     places = [_places(poses, bodies)[following]]
     if later is not None:
         places.append(_places(later, bodies))
-    return shares_of_return(frames, np.concatenate(places), plan.span.last, plan.back)
+    whole = np.concatenate(places) * metres_per_unit(current_scene())
+    shares = shares_of_return(frames, whole, plan.span.last, plan.back)
+    return shares, slid(whole, plan.moved, shares)
 
 
 def _places(poses: Poses, bodies: tuple[str, ...]) -> FloatArray:

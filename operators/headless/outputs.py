@@ -13,7 +13,7 @@ import numpy as np
 from ...bridge.recipe.export import ExportOptions
 from ...bridge.recipe.keys import KeyOptions
 from ...bridge.recipe.loop import LoopOptions
-from ...bridge.recipe.result import ResultOptions
+from ...bridge.recipe.result import ResultOptions, require_return_within
 from ...bridge.rows.choices import FileFormat, KeyChoice, LoopRoot, WrittenAs
 from ...solver.data.faults import OutputNotWritable, WouldReplaceInput
 from ...solver.data.reports.keys import KeysReport
@@ -77,13 +77,19 @@ def _exported(folder: Path, export: ExportOptions) -> Path:
 def require_place(clip: LoadedClip, wanted: ResultOptions, loop: LoopOptions | None) -> None:
     """Before a solve takes its seconds. Raises NoNewSlot, NoRootBone."""
     from ...bridge.loops.write_loop import root_bone
+    """Before a solve takes its seconds. Raises NoNewSlot, ReturnTooLate."""
+    from ...bridge.armature.read import last_keyed
     from ...bridge.takes.write_result import require_slot
 
     if loop is not None and loop.root is LoopRoot.ROOT_BONE:
         root_bone(clip.armature, clip.subject.analysis.performance.character.bodies[0].bone)
 
     apart = loop is not None or clip.subject.problem.requests.body.limbs
-    if wanted.written_as is WrittenAs.SLOT and not apart:  # those are actions of their own
+    if apart:  # those are actions of their own
+        return
+    last = float(clip.subject.recording.frames[-1])
+    require_return_within(wanted, last, last_keyed(clip.armature))
+    if wanted.written_as is WrittenAs.SLOT:
         require_slot(clip.armature)
 
 

@@ -10,6 +10,7 @@ from ...bridge.armature.actions import (
     showing_recorded,
 )
 from ...bridge.armature.incremental import Incremental
+from ...bridge.armature.read import last_keyed
 from ...bridge.constraints.bone_mapping import chosen_parts
 from ...bridge.constraints.motion_problem import (
     analysis_is_of,
@@ -30,7 +31,7 @@ from ...bridge.loops.write_loop import (
 )
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ...bridge.recipe.keys import require_every_frame
-from ...bridge.recipe.result import require_return_after
+from ...bridge.recipe.result import require_return_after, require_return_within
 from ...bridge.repairs.stored import undoubted
 from ...bridge.rows.aimed_requests import apart_from_aimed, require_unaimed
 from ...bridge.rows.choices import LoopRoot, WrittenAs
@@ -188,8 +189,9 @@ class UseBestOperator(TaskOperator, bpy.types.Operator):
 def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     """The motion problem that the settings state, with the recording as it is.
 
-    Raises any Fault of reading and of a rig that cannot be written to, AimedBone, and RateChanged,
-    SpanChanged or ChangedMeanwhile where it is not what was analysed.
+    Raises any Fault of reading and of a rig that cannot be written to, AimedBone, ReturnTooEarly,
+    ReturnTooLate, NoNewSlot, and RateChanged, SpanChanged or ChangedMeanwhile where it is not what
+    was analysed.
     """
     armature = required_armature(context)
     settings = settings_of(armature)
@@ -204,8 +206,13 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     problem = problem_of(settings, recording, scene.objects, skin=skin)
     require_unaimed(problem.requests, aimed, recording.bones)
     apart = loop_options(settings) is not None or problem.requests.body.limbs
-    if options.written_as is WrittenAs.SLOT and not apart:  # those are actions of their own
-        require_slot(armature)
+    if not apart:  # those are actions of their own
+        last = span_of(settings, recording)[1]
+        with showing_recorded(armature)():
+            end = last_keyed(armature)
+        require_return_within(options, last, end)
+        if options.written_as is WrittenAs.SLOT:
+            require_slot(armature)
     return Asked(armature.name, armature.session_uid, recording, problem, scene, aimed)
 
 

@@ -13,6 +13,7 @@ from ...solver.data.requests import PoseRequest
 
 LEAST_SHIFT_MM = 5.0  # of the centre of mass, by which a flight is hardly told from a parabola
 _LEVEL = 0.0005  # m
+_SLIDES = 0.01  # m, of feet on the way back, that shows
 _STRAIGHT = 0.05  # degrees
 
 
@@ -53,6 +54,7 @@ def take_record(written: WrittenTake | KeptByControls) -> dict[str, object]:
         record["carried_m"] = list(move.shift)
         record["carried_turn_deg"] = degrees(move.turn)
         record["back_frame"] = written.back
+        record["slide_on_way_back_m"] = written.slide
     return record
 
 
@@ -148,6 +150,12 @@ def _carried(written: WrittenTake, roles: Mapping[str, str]) -> Iterator[str]:
     yield f"  {', '.join(parts)}"
     if written.back is not None:
         yield f"  It is back where it was at frame {written.back:g}"
+        if written.slide > _SLIDES:
+            room = _frames(round(written.back - written.span.last))
+            yield (
+                f"  On the way, of {room}, standing feet slide by {1000.0 * written.slide:.0f} mm; "
+                "let the range end earlier, or what follows be carried along"
+            )
 
 
 def _controls(kept: KeptByControls) -> Iterator[str]:

@@ -76,6 +76,7 @@ from .requests import PeakTooLow as PeakTooLow
 from .requests import PlacedNowhere as PlacedNowhere
 from .requests import PoseHeld as PoseHeld
 from .requests import ReturnTooEarly as ReturnTooEarly
+from .requests import ReturnTooLate as ReturnTooLate
 from .requests import RootHasNoJoint as RootHasNoJoint
 from .requests import SameUsdNames as SameUsdNames
 from .requests import SeveralTakes as SeveralTakes

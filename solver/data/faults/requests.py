@@ -37,6 +37,16 @@ class ReturnTooEarly(Fault):
 
 
 @dataclass
+class ReturnTooLate(Fault):
+    """A take is to be back where it was by a frame that it does not have. last: the last that is
+    adapted. end: the take's."""
+
+    frame: float
+    last: float
+    end: float
+
+
+@dataclass
 class NoNewSlot(Fault):
     """A result is to be a new slot of an action that can have none. why: to be said after that."""
 

@@ -152,6 +152,14 @@ def test_a_return_before_the_last_adapted_frame_is_refused(analysed: bpy.types.O
         bpy.ops.hangtime.adapt()
 
 
+def test_a_return_beyond_the_takes_end_is_refused(analysed: bpy.types.Object) -> None:
+    end = round(read_recording(analysed).frames[-1])
+    result = analysed.hangtime.result
+    result.after, result.use_return_frame, result.return_frame = "RETURN", True, end + 1
+    with pytest.raises(RuntimeError, match=f"by frame {end + 1}, but its last frame is {end};"):
+        bpy.ops.hangtime.adapt()
+
+
 @pytest.mark.slow
 def test_edits_made_by_hand_are_told_before_they_stay_behind(
     analysed: bpy.types.Object, capfd: pytest.CaptureFixture[str]

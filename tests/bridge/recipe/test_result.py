@@ -2,9 +2,13 @@
 
 import pytest
 from hangtime.bridge.recipe.problem import parse_recipe
-from hangtime.bridge.recipe.result import ResultOptions, require_return_after
+from hangtime.bridge.recipe.result import (
+    ResultOptions,
+    require_return_after,
+    require_return_within,
+)
 from hangtime.bridge.rows.choices import After, WrittenAs
-from hangtime.solver.data.faults import BadRecipe, ReturnTooEarly
+from hangtime.solver.data.faults import BadRecipe, ReturnTooEarly, ReturnTooLate
 
 
 def test_what_becomes_of_the_rest_is_read() -> None:
@@ -38,3 +42,12 @@ def test_a_take_is_not_back_before_it_was_away() -> None:
     require_return_after(options, 199.0)
     with pytest.raises(ReturnTooEarly):
         require_return_after(options, 200.0)
+
+
+def test_a_take_is_not_back_after_its_end() -> None:
+    options = ResultOptions(After.RETURN, return_frame=336.0)
+    require_return_within(options, 330.0, 336.0)
+    require_return_within(ResultOptions(After.RETURN), 330.0, 335.0)  # as soon as there is room
+    require_return_within(ResultOptions(After.CARRY, return_frame=420.0), 330.0, 336.0)
+    with pytest.raises(ReturnTooLate):
+        require_return_within(options, 330.0, 335.0)

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from hangtime.bridge.takes.carry import shares_of_return
+from hangtime.bridge.takes.carry import shares_of_return, slid
+from hangtime.solver.data.stance_move import StanceMove
 
 FRAMES = np.arange(101.0)
 STOOD = 60  # frames, after which the foot goes along with the hips
@@ -23,3 +24,15 @@ def test_where_everything_stands_the_take_comes_back_all_the_same() -> None:
     shares = shares_of_return(FRAMES, np.zeros((101, 2, 3)), 0.0, 100.0)
     assert shares[50] == pytest.approx(0.5)
     assert shares[100] == 0.0
+
+
+@pytest.mark.parametrize(("speed", "slides"), [(0.0, 0.5), (0.1, 0.0)])
+def test_what_stands_slides_with_the_way_back_and_what_travels_does_not(
+    speed: float, slides: float
+) -> None:
+    move = StanceMove("ground 2", (0.0, 0.0, 0.0), 0.0, (0.3, 0.4, 0.0))
+    places = np.zeros((101, 2, 3))
+    places[:, 0, 0] = 0.2 * FRAMES
+    places[:, 1, 0] = speed * FRAMES
+    shares = shares_of_return(FRAMES, places, 0.0, 100.0)
+    assert slid(places, move, shares) == pytest.approx(slides, abs=1e-9)
