@@ -34,14 +34,15 @@ class EndTarget:
 class CostToGo:
     """Half the cost-to-go at both ends, a mean over `points`, in m² s; Gauss-Newton derivatives.
 
-    time: τ, s. weight: of a square metre of error during a second.
+    time: τ, s. weights: before the first instant and beyond the last, of a square metre of error
+    during a second.
     """
 
     transcription: Transcription
     target: EndTarget
     points: tuple[BodyPoint, ...]
     time: float
-    weight: float
+    weights: tuple[float, float]
 
     @cached_property
     def _basis(self) -> FloatArray:
@@ -56,7 +57,8 @@ class CostToGo:
         root, square = np.sqrt(2.0) * self.time, self.time**2
         both = np.array([[root, square], [square, root * square]])
         reversed_time = both * [[1.0, -1.0], [-1.0, 1.0]]
-        return np.asarray(self.weight * np.stack([reversed_time, both]))
+        before, after = self.weights
+        return np.stack([before * reversed_time, after * both])
 
     def _errors(self, x: FloatArray) -> tuple[Pose, FloatArray]:
         """Poses at both ends, and (2, 2, M, 3) the markers' errors and velocities of these."""

@@ -37,7 +37,8 @@ class CostWeights:
     by_range: how much of `shape` is measured by what a change takes of the joints'
     ranges instead of by what it moves, where joints have a price. friction: (m/BW)², of each
     point's force across the target's direction. goes_on: whether the target goes on beyond both
-    ends, so that markers must come back to it there. damping: m², of what a step takes of the
+    ends, so that markers must come back to it there. came_from: of the same before the first
+    instant alone. damping: m², of what a step takes of the
     joints' ranges, in the Hessian alone (Levenberg 1944), where joints have a price.
     """
 
@@ -52,6 +53,7 @@ class CostWeights:
     by_range: float = 0.5
     friction: float = 0.0
     goes_on: bool = False
+    came_from: float = 0.0
     damping: float = 0.0
 
 
@@ -139,8 +141,10 @@ class TrackingCost:
         if price is not None:
             self._price = price.metric(forward_kinematics(transcription.character, target.angles))
         time = weights.acceleration_time
-        to_go = CostToGo(transcription, target.ends, self.points, time, weights.position)
-        goes_on = weights.goes_on and not transcription.periodic  # a loop goes on in itself
+        after = weights.position if weights.goes_on else 0.0
+        ends = (after + weights.came_from, after)
+        to_go = CostToGo(transcription, target.ends, self.points, time, ends)
+        goes_on = any(ends) and not transcription.periodic  # a loop goes on in itself
         self._to_go = to_go if goes_on else None
 
     def _batches(self) -> Iterator[slice]:

@@ -26,11 +26,11 @@ def least_cost(error: float, velocity: float) -> float:
     return 0.5 * float(e @ cost @ e)
 
 
-def cost_of(shift: float, drift: float) -> float:
+def cost_of(shift: float, drift: float, weights: tuple[float, float] = (1.0, 1.0)) -> float:
     """Of a motion that is off by shift (m) + drift (m/s) t from its target."""
     x, t = random_state(3), standing()
     target = motion_target(Motion(t, x, places())).ends
-    to_go = CostToGo(t, target, marker_points(t.character), TIME, weight=1.0)
+    to_go = CostToGo(t, target, marker_points(t.character), TIME, weights)
     assert to_go.value(x) == pytest.approx(0.0, abs=1e-20)
     moved = x.copy()
     knots = t.basis.knots
@@ -44,3 +44,10 @@ def test_it_is_the_least_cost_of_coming_back(shift: float, drift: float) -> None
     """At the end as time goes on, at the start as it runs back."""
     last = least_cost(shift + drift * DURATION, drift)
     assert cost_of(shift, drift) == pytest.approx(least_cost(shift, -drift) + last, rel=1e-3)
+
+
+@pytest.mark.parametrize("weights", [(3.0, 0.0), (0.0, 2.0)])
+def test_each_end_has_its_weight(weights: tuple[float, float]) -> None:
+    before, after = least_cost(0.1, -0.7), least_cost(0.1 + 0.7 * DURATION, 0.7)
+    expected = weights[0] * before + weights[1] * after
+    assert cost_of(0.1, 0.7, weights) == pytest.approx(expected, rel=1e-3)

@@ -24,7 +24,9 @@ COST_WEIGHTS = {
         friction=1e-3,
         goes_on=True,
     ),
-    "adaptation": CostWeights(shape=1.0, com=0.02, acceleration_time=0.05, force=3e-3),
+    "adaptation": CostWeights(
+        shape=1.0, com=0.02, acceleration_time=0.05, force=3e-3, came_from=10.0
+    ),
     "all": CostWeights(
         position=0.7,
         shape=0.4,

@@ -8,7 +8,7 @@ from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.pinned_places import pinned_places
 from hangtime.solver.data.faults import ContradictoryPins, OutOfReach
 from hangtime.solver.data.problem import MotionProblem, OffsetAxes, Pin
-from hangtime.solver.data.requests import Requests
+from hangtime.solver.data.requests import BodyChange, Requests
 from hangtime.solver.data.solver_options import HumanRanges, SolverOptions
 from hangtime.solver.data.status import Status
 from hangtime.solver.fitting.fit import fit
@@ -214,3 +214,14 @@ def test_other_recordings_adapt(relative: str, name: str) -> None:
     adaptation = adapt(fitted, MotionProblem(pins=(EDITS[name],)))
     assert adaptation.outcome.status is Status.SOLVED
     assert_valid(adaptation.motion, adaptation.setup.schedule)
+
+
+@pytest.mark.parametrize("gravity", [9.81, 2.5])
+def test_the_beginning_stays_where_the_take_comes_from(gravity: float) -> None:
+    """In a quarter of the gravity it took a run-up from 25 cm behind."""
+    requests = Requests(body=BodyChange(gravity=gravity))
+    found = adapt(fitted_hop(), MotionProblem(pins=(EDITS["up"],), requests=requests))
+    assert found.solved
+    first = np.zeros(1)
+    off = found.motion.joint_centres(first) - fitted_hop().motion.joint_centres(first)
+    assert np.linalg.norm(off.mean(axis=(0, 1))) < 0.02
