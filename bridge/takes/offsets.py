@@ -13,6 +13,7 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import PoseTrack
+from ...solver.data.reports.keys import BlendReport
 from ...solver.numerics.rotations import rotation_matrix, rotation_vector
 
 
@@ -72,3 +73,22 @@ def remaining(away: FloatArray, length: float) -> FloatArray:
     """Shares (T,) that are left `away` (T,) frames from a seam of what fades over `length`."""
     s = np.clip(away / length, 0.0, 1.0)
     return np.asarray(1.0 - s**3 * (10.0 - 15.0 * s + 6.0 * s**2))
+
+
+def blend_report(shown: PoseTrack, take: PoseTrack, *, into: bool, rate: float) -> BlendReport:
+    """How a blend moves the hips, at its frames and the seam's (T,), T >= 2; the same of the take.
+    rate: frames a second."""
+    speeds = [
+        np.linalg.norm(np.diff(track.root_head, axis=0), axis=1) * rate / np.diff(track.frames)
+        for track in (shown, take)
+    ]
+    fastest, seam = int(speeds[0].argmax()), -1 if into else 0
+    return BlendReport(
+        into=into,
+        first_frame=float(shown.frames[0]),
+        last_frame=float(shown.frames[-1]),
+        off_m=float(np.linalg.norm(shown.root_head[seam] - take.root_head[seam])),
+        speed_m_s=float(speeds[0][fastest]),
+        frame=float(shown.frames[fastest]),
+        take_speed_m_s=float(speeds[1].max()),
+    )

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...solver.arrays import FloatArray
+from ...solver.data.reports.keys import BlendReport
 from ...solver.data.stance_move import StanceMove
 from ..controls.control_rig import ControlRig
 from ..controls.kept import KeptByControls
@@ -79,7 +80,7 @@ class WrittenTake:
     were muted, and are keys now. held: bones that moved joints within the body, and hold still now.
     slide: m, by which the way back makes standing feet slide.
     controls: how near the bodies are that controls pose, and rig: these controls; None where bodies
-    have keys of their own.
+    have keys of their own. blends: how they move the hips, where there are frames to blend.
     """
 
     span: ResultSpan
@@ -91,6 +92,7 @@ class WrittenTake:
     controls: KeptByControls | None = None
     rig: ControlRig | None = None
     slide: float = 0.0
+    blends: tuple[BlendReport, ...] = ()
 
     @property
     def later(self) -> int:

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
 from ...solver.data.recording import PoseTrack
+from ...solver.data.reports.keys import BlendReport
 from ...solver.data.stance_move import StanceMove
 from ..accessors import current_scene
 from ..action_slots import all_curves
@@ -19,7 +20,7 @@ from ..armature.actions import note_take, showing_action
 from ..armature.channels import proper
 from ..armature.incremental import Incremental, sample_incrementally
 from ..armature.pose_basis import pose_bases
-from ..armature.poses import Poses, metres_per_unit
+from ..armature.poses import Poses, frames_per_second, metres_per_unit
 from ..armature.steady_joints import steady_bases
 from ..controls.control_rig import (
     ControlRig,
@@ -32,7 +33,7 @@ from ..controls.kept import kept_by
 from ..controls.targets import targets_of
 from .carry import carried, shares_of_return, slid
 from .key_splice import FullTurns, anchor, applied, retime, splice
-from .offsets import faded, seam_offset
+from .offsets import blend_report, faded, seam_offset
 from .owned import OwnedChannel, carrying_bones, owned_by, owned_channels, steady_channels
 from .plain_root import plain_poses
 from .plan import AdaptedMotion, Plan, planned
@@ -77,7 +78,7 @@ def write_take(
         if later is None:
             later = yield from sample_incrementally(armature, plan.rest_frames, showing)
     shares, slide = _shares(poses, later, plan, bones)
-    body, rest = _tracks(poses, later, plan, motion, (carrying, shares))
+    body, rest, blends = _tracks(poses, later, plan, motion, (carrying, shares))
     yield None
     held: dict[OwnedChannel, FloatArray] = {}
     if rig is None:
@@ -112,9 +113,8 @@ def write_take(
         shown = yield from sample_incrementally(armature, plan.body_frames, showing)
         kept = kept_by(shown, targets_of(armature, poses, body), len(rig.used))
     bones_held = tuple(dict.fromkeys(channel.bone for channel in held))
-    return WrittenTake(
-        plan.span, plan.moved, plan.back, plan.time, done, bones_held, kept, rig, slide
-    )
+    about = plan.span, plan.moved, plan.back, plan.time
+    return WrittenTake(*about, done, bones_held, kept, rig, slide, blends)
 
 
 def _controls(
@@ -174,26 +174,36 @@ def _tracks(
     plan: Plan,
     motion: AdaptedMotion,
     carrying: tuple[tuple[str, ...], FloatArray],
-) -> tuple[PoseTrack, PoseTrack | None]:
+) -> tuple[PoseTrack, PoseTrack | None, tuple[BlendReport, ...]]:
     """Poses of all bodies at the body's frames, and of those that carry them at the frames that
-    follow. carrying: these, and the shares (T,) of the stance's move from the last adapted on."""
-    span, (carriers, shares) = plan.span, carrying
+    follow; and how the blends move the hips. carrying: these, and the shares (T,) of the stance's
+    move from the last adapted frame on."""
+    span, rate = plan.span, frames_per_second(current_scene())
+    carriers, shares = carrying
     take = _take_of(poses, motion.track.bones, plan.body_frames)
     rest = None
     if later is not None:
         rest = _take_of(later, carriers, plan.rest_frames)
     following = _frames_from(take, span.last)
     count = len(following.frames)
-    after = _rows(_carried(following, plan.moved, shares[:count]), slice(1, None))
+    goal = _carried(following, plan.moved, shares[:count])
+    after = _rows(goal, slice(1, None))
+    blends = []
     if len(span.after):
         before = _frames_until(take, span.last)
         before = _carried(before, plan.moved, np.ones(len(before.frames)))
         offset = seam_offset(_backwards(motion.track), _backwards(before))
         after = faded(after, offset, after.frames - span.last, span.blend_out)
-    whole = _concatenated([*_blended_in(take, span, motion.track), motion.track, after])
+        shown = _concatenated([_rows(motion.track, slice(-1, None)), after])
+        blends.append(blend_report(shown, goal, into=False, rate=rate))
+    into = list(_blended_in(take, span, motion.track))
+    if into:
+        shown = _concatenated([*into, _rows(motion.track, slice(1))])
+        goal = _frames_until(take, span.first)
+        blends.insert(0, blend_report(shown, goal, into=True, rate=rate))
     if rest is not None:
         rest = _carried(rest, plan.moved, shares[count:])
-    return whole, rest
+    return _concatenated([*into, motion.track, after]), rest, tuple(blends)
 
 
 def _shares(

@@ -3,6 +3,7 @@ strips over the take's, or slots (Blender 4.4) beside it."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 import bpy
@@ -166,6 +167,7 @@ def _write(
         if cut_off:
             for curve in all_curves(action):
                 fcurves.crop(curve, float(motion.track.frames[0]), float(motion.track.frames[-1]))
+            written = replace(written, blends=())  # which are left out
         whole = True
     finally:
         if not whole:  # cancelled in between: half an action is of no use to anybody

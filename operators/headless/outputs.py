@@ -156,7 +156,7 @@ class Outputs:
         with self.stages.stage("Measuring"):
             if trajectory:
                 write_trajectory(self.result, self.outbox)
-            report = replace(self._report(), keys=keys, missed_contacts=missed)
+            report = replace(self._report(written), keys=keys, missed_contacts=missed)
         self._write_report(report, written)
         return report
 
@@ -196,11 +196,14 @@ class Outputs:
             written = self._write_actions("best found, short of the goal").take
             self._build_scene()
             _save_blend(self.outbox.path(BEST))
-        self._write_report(self._report(), written)
+        self._write_report(self._report(written), written)
 
-    def _report(self) -> Report:
-        """With the stages that have ended."""
-        return self.result.report(self.clip.origin, self.stages.done)
+    def _report(self, written: WrittenTake | KeptByControls | None) -> Report:
+        """With the stages that have ended, and the blends that were written."""
+        from ...bridge.takes.span import WrittenTake
+
+        made = self.result.report(self.clip.origin, self.stages.done)
+        return replace(made, blends=written.blends if isinstance(written, WrittenTake) else ())
 
     def _missed(self, made: _Written) -> tuple[MissedContact, ...]:
         """Contacts that the keys which the performer shows have elsewhere than solved; none of a

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from ...solver.data.faults import NoFit, NoSolution
 from ...solver.data.reports.certificate import CertificateItem, CertificateLine
 from ...solver.data.reports.constraints import AcceptedReport, ConstraintReport, FitNeeds
-from ...solver.data.reports.keys import MissedContact
+from ...solver.data.reports.keys import BlendReport, MissedContact
 from ...solver.data.reports.report import FitQuality, Report
 from ...solver.data.row_kinds import RowKind
 from ...solver.data.status import Durations, Status
@@ -20,6 +20,8 @@ AS_RECORDED = {
     Durations.NOT_MET: "Durations are as recorded, as with those for the moved landing not all "
     "that is asked for was reached",
 }
+FAR_OFF = 0.05  # m, beside the take; a blend of less is hardly seen
+LURCH = 0.5  # m/s, by which a blend's hips are faster than the take's; of less, likewise
 FITS = (CertificateItem.FIT_RMS, CertificateItem.FIT_WORST_FRAME)
 
 # What may be done about keys that do not show what was solved.
@@ -62,7 +64,7 @@ def headline(report: Report) -> list[str]:
         return [sentence(NoSolution(report.status, fit_off_cm=next(fit, 0.0)))]
     accepted = accepted_lines(report.needs)
     told = [nearness(report.fit_to_recording), *accepted, *lifted_lines(report)]
-    told += given_up_lines(report)
+    told += given_up_lines(report) + blend_lines(report.blends)
     told += [AS_RECORDED[report.durations]] if report.durations in AS_RECORDED else []
     told += [line_told(line) for line in most_telling(report.failed)]
     missed = [missed_line(report.missed_contacts)] if report.missed_contacts else []
@@ -174,6 +176,24 @@ def given_up_lines(report: Report) -> list[str]:
     ]
     more = len(ranked) - len(told)
     return [*told, f"and {more} more, which the report lists"] if more else told
+
+
+def blend_lines(blends: Sequence[BlendReport]) -> list[str]:
+    """The blends that have the hips far to go, with what may be done: lines."""
+    return [
+        f"The hips are {length(each.off_m)} beside the take at frame {_seam(each):g}: "
+        f"the blend {'in' if each.into else 'out'} (frames {each.first_frame:g} to "
+        f"{each.last_frame:g}) moves them at up to {each.speed_m_s:.1f} m/s (frame "
+        f"{each.frame:g}), the take at {each.take_speed_m_s:.1f}, and feet slide. "
+        f"{'Begin the range earlier' if each.into else 'End the range later'}, or blend over more "
+        "frames"
+        for each in blends
+        if each.off_m > FAR_OFF and each.speed_m_s > each.take_speed_m_s + LURCH
+    ]
+
+
+def _seam(blend: BlendReport) -> float:
+    return blend.last_frame if blend.into else blend.first_frame
 
 
 def _tolerances(each: ConstraintReport) -> float:

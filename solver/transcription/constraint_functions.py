@@ -82,7 +82,8 @@ class OrientationDistance:
     kind: RowKind = RowKind.ORIENTATION
 
     def value(self, state: State) -> FloatArray:
-        return np.linalg.norm(self.orientation.value(state), axis=1, keepdims=True)
+        off = self.orientation.value(state)
+        return np.asarray(np.linalg.norm(off, axis=1, keepdims=True))
 
     def jacobians(self, state: State) -> list[ChannelJacobian]:
         off = self.orientation.value(state)

@@ -1,4 +1,4 @@
-"""Record of the report on the keys that a result was written with."""
+"""Records of the report on the keys that a result was written with, and on its blends."""
 
 from dataclasses import dataclass
 
@@ -38,3 +38,21 @@ class MissedContact:
     mm: float
     frame: float
     scaled: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class BlendReport:
+    """A blend between the take and the adapted frames: how it moves the hips.
+
+    into: whether it leads into the adapted frames; else out of them. first_frame, last_frame: its
+    own, the seam included. off_m: of the hips from the take (carried along) at the seam. speed_m_s:
+    the hips' highest in it, at `frame`; take_speed_m_s: the take's highest there.
+    """
+
+    into: bool
+    first_frame: float
+    last_frame: float
+    off_m: float
+    speed_m_s: float
+    frame: float
+    take_speed_m_s: float

@@ -95,7 +95,7 @@ def test_the_rest_of_the_take_and_the_keys_come_along(
     assert not {"[result]", "[keys]"} & set(usual.splitlines())
     options = settings.result
     options.after, options.written_as, options.lock_others = "RETURN", "STRIP", True
-    options.use_return_frame, options.return_frame = True, 900
+    options.use_return_frame, options.return_frame = True, 300
     options.use_blend, options.blend_in, options.blend_out = True, 7, 11
     settings.result_keys.on, settings.result_keys.distance = "REDUCED", 3.0
     found = recipe(tmp_path)

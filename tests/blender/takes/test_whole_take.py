@@ -127,6 +127,26 @@ def test_the_adapted_frames_are_as_solved_and_seams_have_no_bend() -> None:
     assert np.abs(left[: FIRST - int(BLEND)]).max() == 0.0
 
 
+def test_how_blends_move_the_hips_is_told() -> None:
+    """Of hips that are 0.4 m beside the take at both seams."""
+    armature = take()
+    recording = read_recording(armature)
+    asked = motion(recording)
+    steady = recording.window(FIRST, LAST).heads[:, 0] + [0.0, 0.4, 0.0]
+    asked = replace(asked, track=replace(asked.track, root_head=steady))
+    _, written = write_result(armature, asked, name="Result")
+    assert written is not None
+    into, out = written.blends
+    assert (into.into, into.first_frame, into.last_frame) == (True, FIRST - BLEND, FIRST)
+    assert (out.into, out.first_frame, out.last_frame) == (False, LAST, LAST + BLEND)
+    rate = bpy.context.scene.render.fps
+    usual = 0.4 * 1.875 * rate / BLEND  # the quintic polynomial's highest speed, halfway
+    for each in written.blends:
+        assert each.off_m == pytest.approx(0.4, abs=1e-6)
+        assert each.speed_m_s == pytest.approx(usual, abs=each.take_speed_m_s + 0.05 * usual)
+        assert each.first_frame < each.frame < each.last_frame
+
+
 def as_made(_armature: bpy.types.Object) -> None:
     """Nothing but its curves moves the rig."""
 

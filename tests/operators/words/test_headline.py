@@ -7,6 +7,7 @@ from hangtime.operators.words.headline import MOST_GIVEN_UP, headline
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.reports.constraints import ConstraintReport
 from hangtime.solver.data.reports.jumps import LiftedFlight
+from hangtime.solver.data.reports.keys import BlendReport
 from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.status import Durations
@@ -46,6 +47,31 @@ def test_a_flight_that_lifting_made_longer_is_told_with_its_frames() -> None:
     (line,) = [line for line in lines if "nothing touches from frame 199 to 292" in line]
     assert "“One leg”" in line
     assert "0.77 s" in line
+
+
+def test_a_blend_that_has_far_to_go_is_told_with_its_speed_and_a_remedy() -> None:
+    problem = MotionProblem()
+    made = report(adapt(fitted_hop(), problem), problem, Origin("hop"))
+    into = BlendReport(
+        into=True,
+        first_frame=31.0,
+        last_frame=60.0,
+        off_m=0.48,
+        speed_m_s=4.2,
+        frame=45.0,
+        take_speed_m_s=0.6,
+    )
+    out = replace(into, into=False, first_frame=330.0, last_frame=359.0)
+    near = replace(into, off_m=0.02)
+    assert headline(replace(made, blends=(near,))) == headline(made)
+    lines = "\n".join(headline(replace(made, blends=(into, out))))
+    assert (
+        "The hips are 48.0 cm beside the take at frame 60: the blend in (frames 31 to 60) moves "
+        "them at up to 4.2 m/s (frame 45), the take at 0.6" in lines
+    )
+    assert "Begin the range earlier" in lines
+    assert "beside the take at frame 330: the blend out (frames 330 to 359)" in lines
+    assert "End the range later" in lines
 
 
 @pytest.mark.parametrize("durations", Durations)
