@@ -199,6 +199,7 @@ class _Process:
         # Without a buffer (above) the pipe is a raw FileIO, which the stubs do not know.
         self._from_worker = BufferedReader(cast(FileIO, self._popen.stdout))
         self._greeted = Event()
+        self._silent = Event()  # since nothing more is heard of it
         self._sending = Lock()
         self._asked: SimpleQueue[PendingRequest | DragStream | None] = SimpleQueue()
         self._heard: SimpleQueue[Message | Exception] = SimpleQueue()
@@ -215,7 +216,8 @@ class _Process:
 
     @property
     def alive(self) -> bool:
-        return self._popen.poll() is None
+        # Of a process that another thread waits for, `poll` says that it lives.
+        return not self._silent.is_set() and self._popen.poll() is None
 
     def ask(self, asked: PendingRequest | DragStream) -> None:
         """Has the requests made once those before them are answered; never waits."""
@@ -314,8 +316,10 @@ class _Process:
                     self._halted.add(message.id)
                 else:
                     self._heard.put(message)
+            self._silent.set()
             self._heard.put(EOFError())
         except (OSError, ValueError, ProtocolError) as problem:  # ValueError: closed by end()
+            self._silent.set()
             self._heard.put(problem)
         except BaseException as problem:
             # A mistake of ours; who waits for an answer must hear that nobody listens any more, and
