@@ -9,6 +9,7 @@ from bpy.app.handlers import persistent
 
 from ..bridge import worker_client
 from ..bridge.accessors import present
+from ..bridge.app_handlers import add_handler
 from ..bridge.properties import settings, stances
 from ..bridge.properties.attached_groups import attach_groups, release_groups
 from ..operators import names
@@ -81,10 +82,8 @@ def register() -> Callable[[], None]:
             undo.callback(bpy.utils.unregister_class, cls)
         attach_groups(undo)
         for follow in (_follow_empties, watch.follow_takes):
-            bpy.app.handlers.depsgraph_update_post.append(follow)
-            undo.callback(bpy.app.handlers.depsgraph_update_post.remove, follow)
-        bpy.app.handlers.load_post.append(session.forget_file)
-        undo.callback(bpy.app.handlers.load_post.remove, session.forget_file)
+            add_handler(undo, bpy.app.handlers.depsgraph_update_post, follow)
+        add_handler(undo, bpy.app.handlers.load_post, session.forget_file)
         undo.callback(watch.forget)
         undo.callback(session.session().end)
         # Keys are pairs, whatever the stubs say.

@@ -7,7 +7,7 @@ exporter gives each take keys of everything, so an armature's first may be of a 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
@@ -20,6 +20,7 @@ from ...solver.data.faults import NoAction, NoArmature, NotInFile
 from ...solver.data.reports.recording import ChosenTake
 from ..accessors import armature_data, current_action, pose_of
 from ..action_slots import all_curves
+from ..app_handlers import add_handler
 from ..armature import fcurves
 
 Places: TypeAlias = "dict[str, Mapping[str | None, Matrix]]"
@@ -216,9 +217,6 @@ def places_without_keys() -> Iterator[Places]:
                 own |= {bone.name: bone.matrix_basis.copy() for bone in pose_of(each).bones}
                 places[each.name] = own
 
-    handlers = bpy.app.handlers.depsgraph_update_pre
-    handlers.append(note)
-    try:
+    with ExitStack() as undo:
+        add_handler(undo, bpy.app.handlers.depsgraph_update_pre, note)
         yield places
-    finally:
-        handlers.remove(note)

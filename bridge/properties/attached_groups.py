@@ -6,6 +6,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..accessors import ATTRIBUTE, attached, snapshot
+from ..app_handlers import add_handler
 from .settings import CARRIERS, CLASSES
 
 _ensured = ExitStack()  # what takes back what `ensure_groups` did
@@ -23,8 +24,7 @@ def attach_groups(undo: ExitStack) -> None:
         undo.callback(delattr, carrier, ATTRIBUTE)
     # Opened files too: automatic saves, of which nobody is told, come before the artist's.
     for handlers in (bpy.app.handlers.save_pre, bpy.app.handlers.load_post):
-        handlers.append(complete_overrides)
-        undo.callback(handlers.remove, complete_overrides)
+        add_handler(undo, handlers, complete_overrides)
 
 
 @persistent  # type: ignore[untyped-decorator]  # any, in the stubs

@@ -101,6 +101,15 @@ def test_registering_five_times_leaves_nothing_behind(monkeypatch: pytest.Monkey
             assert not hasattr(carrier, ATTRIBUTE)
 
 
+@pytest.mark.usefixtures("_disabled")
+def test_a_script_that_empties_blenders_handlers_does_not_keep_it_from_being_disabled() -> None:
+    hangtime.register()
+    for name in ("depsgraph_update_post", "load_post", "save_pre"):
+        getattr(bpy.app.handlers, name).clear()
+    hangtime.unregister()
+    assert names_in_blender() == set()
+
+
 ENABLE = """
 import runpy, sys
 runpy.run_path(sys.argv[1])["load"]().register()
