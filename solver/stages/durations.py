@@ -32,9 +32,10 @@ DERIVATIVE_STEP = 1e-4  # of s, of the finite differences of the rows
 PROBE = 0.03  # of s, for which D is taken: a step with its bounds is only piecewise linear in it
 MAX_STEP = 0.3  # of s in one step
 MIN_STEP = 0.01  # of s: some milliseconds of a flight; the next step would change it by far less
+SETTLED = 0.05  # of s, that the last step may change it by: a twentieth of a flight
 MAX_STEPS = 4
 MAX_RATIO = 0.5  # of the violation, left at the end; the solve proper does the rest
-DIVERGED = 10.0  # times the violation, from where no step has come back
+CLOSE = 0.1  # of the violation, from where a small step is the last
 
 
 @dataclass(frozen=True)
@@ -51,22 +52,26 @@ def find_durations(
     """Durations of flights for contacts at other places, and the motion that goes with them.
 
     start: what it violates is let be. reference: x0 (K, n_block), of the same transcription,
-    carried to places (n_contacts, 3) m. None where no such motion is found.
+    carried to places (n_contacts, 3) m. None where no such motion is found: rows linearised at the
+    start tell nothing of one that is too far from it.
     """
     metric, linearised = start.metric, start.unpriced
     problem = _BorderedProblem(start.motion, linearised.rows, places, tuple(flights))
     x, timed = reference, problem.timed(np.zeros(len(flights)))
     value = timed.values(x)
-    before = linearised.violation(value)
-    for steps in range(1, MAX_STEPS + 1):
+    before = left = linearised.violation(value)
+    for steps in range(MAX_STEPS):
         at = x, timed.s, value
         step, change = _step(linearised, metric, problem, at, metric.times(x - reference))
-        x, timed = x + step, problem.timed(timed.s + change)
-        value = timed.values(x)
-        settled = steps > 1 and np.abs(change).max() < MIN_STEP
-        if settled or not linearised.violation(value) < DIVERGED * before:
+        changed, further = float(np.abs(change).max()), problem.timed(timed.s + change)
+        value = further.values(x + step)
+        now = linearised.violation(value)
+        if not now < left:
             break
-    if not linearised.violation(value) < MAX_RATIO * before:
+        x, timed, left = x + step, further, now
+        if steps > 0 and changed < MIN_STEP and left < CLOSE * before:
+            break
+    if changed > SETTLED or not left < MAX_RATIO * before:
         return None
     # By metres alone the least change twirls a neck by 70 degrees at the end of a clip.
     x = reference + start.priced.step(timed.values(reference)).d

@@ -167,6 +167,17 @@ def test_far_landings_have_durations_too(forward: float, up: float) -> None:
     assert flight.end - flight.start > 1.1 * recorded()[FLIGHT]
 
 
+@pytest.mark.slow
+def test_a_set_of_ever_farther_landings_flies_evenly_longer() -> None:
+    """Variants beside each other must look it: none of 15 cm more leaps up."""
+    distances = np.arange(0.6, 1.96, 0.15)
+    made = [set_up(broad_jump(), to(float(forward))).schedule.flights for forward in distances]
+    flights = np.array([flight[0].end - flight[0].start for flight in made])
+    growth = np.diff(flights)
+    assert growth.min() > 0.0, flights
+    assert growth.max() < 0.06, flights  # 15 cm at the fall's own sqrt: 0.04 s here
+
+
 def test_a_flight_that_the_range_begins_in_has_no_push_to_change() -> None:
     analysis = analyse(load_recording("run_2.bvh"), MotionProblem(frames=(28, 123)))
     transcription = transcribe(analysis.performance, analysis.schedule)
