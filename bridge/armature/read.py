@@ -10,6 +10,7 @@ from ...solver.arrays import FloatArray
 from ...solver.data.faults import BadScale, NoArmature, NoBones, NonFiniteKey
 from ...solver.data.recording import Bone, Recording
 from ..accessors import armature_data, current_action, current_scene, present
+from ..properties.of_actions.known_contacts import known_contacts
 from . import fcurves
 from .channels import proper
 from .played import require_unblended, require_unstarred, strip_time, why_no_action
@@ -93,13 +94,15 @@ def recording_of(armature: bpy.types.Object, frames: FloatArray, poses: Poses) -
     metres = metres_per_unit(current_scene())
     world = poses.object_to_world[:, None] @ poses.matrices
     _require_finite_poses(poses, frames, world)
+    action = present(current_action(armature))
     return Recording(
-        name=present(current_action(armature)).name,
+        name=action.name,
         bones=rest_bones(armature, poses),
         frames=frames,
         times=(frames - frames[0]) / frames_per_second(current_scene()),
         heads=world[..., :3, 3] * metres,
         rotations=proper(world[..., :3, :3]),
+        known=known_contacts(action, strip_time(armature, action)),
     )
 
 

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from ...solver.data.reports.constraints import ConstraintReport
 from ...solver.data.reports.report import Report
 from ...solver.data.scene import CLEARANCE
+from ..properties.of_actions.shown_overlaps import IN
 from ..properties.settings import HangtimeSettings
-from ..properties.shown_overlaps import IN
 from ..rows.choices import Met
 from ..scene.members import objects_of
 

@@ -369,6 +369,7 @@ class HangtimeAction(bpy.types.PropertyGroup):
     report: declared(text(), options=HIDDEN)  # the report's text
     times: declared(text(), options=HIDDEN)  # its time map: recorded frames, adapted frames
     overlaps: declared(text(), options=HIDDEN)  # what is in what: of the recording, of itself
+    known_contacts: declared(text(), options=HIDDEN)  # of the frames that adaptations wrote
 
 
 def settings_of(armature: bpy.types.Object) -> HangtimeSettings:

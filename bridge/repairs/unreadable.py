@@ -12,9 +12,10 @@ from ..accessors import current_action
 from ..armature import traces_store
 from ..armature.actions import recorded_action
 from ..hidden_texts import HiddenText
+from ..properties.of_actions.known_contacts import KNOWN
+from ..properties.of_actions.shown_overlaps import OVERLAPS
+from ..properties.of_actions.shown_times import TIMES
 from ..properties.settings import action_settings, settings_of
-from ..properties.shown_overlaps import OVERLAPS
-from ..properties.shown_times import TIMES
 from ..rows.phases import UNSEEN
 from ..takes.takes import SPANS
 from ..unkeyed import UNKEYED
@@ -49,6 +50,7 @@ def unreadable_texts(armature: bpy.types.Object) -> Iterator[UnreadableText]:
             (SPANS, made.spans),
             (TIMES, made.times),
             (OVERLAPS, made.overlaps),
+            (KNOWN, made.known_contacts),
             (UNKEYED, action.get(UNKEYED.name)),
         )
         for text, stored in texts:

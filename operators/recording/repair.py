@@ -3,8 +3,8 @@
 import bpy
 
 from ...bridge.accessors import armature_data, current_scene, pose_of
+from ...bridge.properties.of_actions.shown_times import shown_frames
 from ...bridge.properties.settings import HangtimeSettings, settings_of
-from ...bridge.properties.shown_times import shown_frames
 from ...bridge.repairs.remedies import use_remedy
 from ...bridge.repairs.stored import (
     finding_named,

@@ -6,8 +6,8 @@ import bpy
 
 from ...bridge.accessors import present
 from ...bridge.plots.screen import Axis
+from ...bridge.properties.of_actions.shown_times import shown_frames
 from ...bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
-from ...bridge.properties.shown_times import shown_frames
 from ...bridge.repairs.stored import finding_of, findings, is_applied
 from ...bridge.rows.phases import carried, clip_ends, phases
 from ...solver.data.contacts import PhaseKind

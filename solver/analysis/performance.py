@@ -10,13 +10,14 @@ from ..arrays import BoolArray, FloatArray
 from ..body.anatomy import Part, Side
 from ..body.character import Character, body_rotations
 from ..body.kinematics import BodyPoint
-from ..data.contacts import ContactPoint, ContactSchedule, PointKind, snap
+from ..contacts.contact_detection import detect_contacts
+from ..contacts.known_contacts import Clock, with_known
+from ..data.contacts import ContactPoint, ContactSchedule, PointKind, numbered, snap
 from ..data.recording import Recording, Skin
 from ..data.scene import SceneObject
 from ..numerics.interpolation import interpolate
 from ..scene.support import StandingGround, boxes_beneath, level, on_boxes
-from ..unseen.free_fall import clear_falls, without_falls
-from .contact_detection import detect_contacts
+from ..unseen.free_fall import clear_falls, unseen_support, without_falls
 from .skin import skin_of_bodies
 from .soles import FootTracks, floor_height, foot_points
 
@@ -86,7 +87,7 @@ def find_contacts(performance: Performance, scene: Sequence[SceneObject] = ()) -
     Found in the whole take, and told as far as they are within the recording. Ground of the scene
     counts where the floor alone leaves support unseen: elsewhere the recording knows nothing of
     what is put into its way. Where feet rest in mid-air, and then the body falls, only the rest is
-    unseen support. Places on ground that moves are as seen from it.
+    unseen support. Places on ground that moves are as seen from it. What is known is not sought.
     """
     take = performance.take
     points, floor_m = contact_points(take)
@@ -106,6 +107,11 @@ def find_contacts(performance: Performance, scene: Sequence[SceneObject] = ()) -
         falls = clear_falls(take.times, take.com, flights)
         unseen = (piece for gap in schedule.unseen for piece in without_falls(gap, falls))
         schedule = replace(schedule, unseen=tuple(unseen))
+    if take.recording.known:
+        clock = Clock(take.recording.frames, take.times)
+        known = with_known(schedule.contacts, take.recording.known, clock, points, duration)
+        carried = unseen_support(known, duration, take.times, take.com)
+        schedule = ground.named(replace(schedule, contacts=numbered(known), unseen=carried))
     return snap(schedule, snap_tolerance(performance))
 
 

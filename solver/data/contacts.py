@@ -119,6 +119,19 @@ class Contact:
 
 
 @dataclass(frozen=True)
+class KnownContacts:
+    """All contacts in frames of a recording that an adaptation wrote, on ground that stays.
+
+    first, last: scene frames. contacts: points, such as "Left heel", each with the scene frames at
+    which its force begins and ends.
+    """
+
+    first: float
+    last: float
+    contacts: tuple[tuple[str, float, float], ...]
+
+
+@dataclass(frozen=True)
 class Interval:
     """A time interval [start, end], s."""
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from .contacts import KnownContacts
 
 POSE_TOLERANCE = 1e-5  # m and rad; going into edit mode and back moves bones by less
 MIN_CLIP_DURATION = 0.3  # s
@@ -69,7 +70,8 @@ class Recording:
 
     frames: (T,) scene frame numbers. times: (T,) s, 0 at the first frame, or at the first one of
     the range that is looked at where there are frames beyond it.
-    heads: (T, B, 3) m. rotations: (T, B, 3, 3), bone to world, proper rotations.
+    heads: (T, B, 3) m. rotations: (T, B, 3, 3), bone to world, proper rotations. known: contacts of
+    frames that adaptations wrote, in order; these may lie beyond the recording's.
     """
 
     name: str
@@ -78,6 +80,7 @@ class Recording:
     times: FloatArray
     heads: FloatArray
     rotations: FloatArray
+    known: tuple[KnownContacts, ...] = ()
 
     @property
     def rate(self) -> float:

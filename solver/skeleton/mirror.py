@@ -76,7 +76,11 @@ def mirrored(recording: Recording, first: float | None = None) -> Recording:
     turned = recording.rotations @ np.swapaxes(rests, 1, 2)  # from the rest, world axes
     rotations = plane.matrix @ turned[:, partners] @ rest_plane.matrix @ rests
     moved = plane.reflected(recording.heads[:, partners])
-    return replace(recording, bones=bones, heads=moved, rotations=rotations)
+    known = tuple(
+        replace(each, contacts=tuple((other_side(p), a, b) for p, a, b in each.contacts))
+        for each in recording.known
+    )
+    return replace(recording, bones=bones, heads=moved, rotations=rotations, known=known)
 
 
 @dataclass(frozen=True)

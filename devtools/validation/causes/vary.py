@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from types import ModuleType
 
-from ....solver.analysis import accelerations, force_timing, grounding
+from ....solver.analysis import accelerations, grounding
+from ....solver.contacts import force_timing
 from ....solver.fitting import fit, transcribe
 from ....solver.objectives.tracking_cost import CostWeights
 from ....solver.results import certificate

@@ -12,7 +12,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature.traces_store import keep
 from hangtime.bridge.constraint_kinds import KINDS
-from hangtime.bridge.properties.shown_overlaps import ShownOverlap
+from hangtime.bridge.properties.of_actions.shown_overlaps import ShownOverlap
 from hangtime.bridge.rows.choices import Span
 from hangtime.tests.blender.helpers.overlays import (
     FIGURE,

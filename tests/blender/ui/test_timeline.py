@@ -10,7 +10,7 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 import hangtime
-from hangtime.bridge.properties.shown_times import recorded_frame, store_times
+from hangtime.bridge.properties.of_actions.shown_times import recorded_frame, store_times
 from hangtime.operators.names import OperatorId
 from hangtime.operators.timeline import contact_edge_operator
 from hangtime.operators.timeline.contact_edge_state import Edge

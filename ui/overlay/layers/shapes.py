@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ....bridge.properties.shown_overlaps import ShownOverlap, shown_overlaps
+from ....bridge.properties.of_actions.shown_overlaps import ShownOverlap, shown_overlaps
 from ....solver.data.traces import Traces
 from ..context.layer import Layer, Part
 from ..context.view_context import ShownMotion, ViewContext

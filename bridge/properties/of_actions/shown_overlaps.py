@@ -8,9 +8,9 @@ from typing import Any
 
 import bpy
 
-from ...solver.data.reports.report import Report
-from ..hidden_texts import HiddenText, listed, number, word
-from .settings import action_settings
+from ....solver.data.reports.report import Report
+from ...hidden_texts import HiddenText, listed, number, word
+from ..settings import action_settings
 
 IN = " in "  # between the names, as the solver calls what is in what
 

@@ -13,11 +13,11 @@ from hangtime.devtools.doctor.damages import at_rate
 from hangtime.devtools.filters import low_pass
 from hangtime.devtools.recordings import HOPS
 from hangtime.solver.analysis.analyse import analyse
-from hangtime.solver.analysis.contact_detection import detect_contacts
 from hangtime.solver.analysis.performance import Performance, contact_points, find_contacts, perform
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import build_character
+from hangtime.solver.contacts.contact_detection import detect_contacts
 from hangtime.solver.data.contacts import (
     Contact,
     ContactPoint,

@@ -1,0 +1,1 @@
+"""What is kept with an adapted action as text, and read of it."""

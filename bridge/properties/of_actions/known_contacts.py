@@ -1,0 +1,78 @@
+"""Contacts of results, which are known and so need not be found in what is made from them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection
+from dataclasses import astuple
+from typing import Any
+
+import bpy
+import numpy as np
+
+from ....solver.data.contacts import ContactSchedule, KnownContacts
+from ...hidden_texts import HiddenText, listed, number, word
+from ...played_strips import StripTime
+from ..settings import action_settings
+
+Known = tuple[KnownContacts, ...]
+
+
+def known_in(
+    schedule: ContactSchedule, first: float, rate: float, moving: Collection[str]
+) -> Known:
+    """The contacts of a motion from a scene frame on, at frames a second; nothing where some are on
+    what moves, since points do not keep their places then. moving: names of such objects."""
+    if any(contact.on in moving for contact in schedule.contacts):
+        return ()
+    contacts = ((c.point, first + c.start * rate, first + c.end * rate) for c in schedule.contacts)
+    return (KnownContacts(first, first + schedule.duration * rate, tuple(contacts)),)
+
+
+def store_known(
+    action: bpy.types.Action, own: Known, source: bpy.types.Action | None, later: float
+) -> None:
+    """Keeps with a result its own contacts, and its source's beside them. later: frames by which
+    what follows is."""
+    before = known_contacts(source) if source is not None else ()
+    first = min((each.first for each in own), default=np.inf)
+    last = max((each.last for each in own), default=first)
+    every = [*(_cut(each, -np.inf, first) for each in before), *own]
+    every += [_cut(_mapped(each, later), last, np.inf) for each in before]
+    some = [astuple(each) for each in every if each.first < each.last]
+    action_settings(action).known_contacts = json.dumps(some)
+
+
+def _cut(known: KnownContacts, first: float, last: float) -> KnownContacts:
+    """What lies between two frames; nothing does where it ends before it begins."""
+    cut = ((p, max(a, first), min(b, last)) for p, a, b in known.contacts)
+    contacts = tuple((p, a, b) for p, a, b in cut if a < b)
+    return KnownContacts(max(known.first, first), min(known.last, last), contacts)
+
+
+def known_contacts(action: bpy.types.Action, time: StripTime | None = None) -> Known:
+    """What is known of an action, in scene frames. time: of the strip that plays it."""
+    known = KNOWN.of(action_settings(action).known_contacts)
+    if time is None:
+        return known
+    start, scale = float(time.to_scene(np.zeros(1))[0]), time.scale
+    return tuple(_mapped(each, start, scale) for each in known)
+
+
+def _mapped(known: KnownContacts, later: float, scale: float = 1.0) -> KnownContacts:
+    """The same at other frames."""
+    contacts = ((p, later + scale * a, later + scale * b) for p, a, b in known.contacts)
+    first, last = later + scale * known.first, later + scale * known.last
+    return KnownContacts(first, last, tuple(contacts))
+
+
+def _read(content: Any) -> Known:
+    return tuple(_read_one(*listed(each)) for each in listed(content))
+
+
+def _read_one(first: Any, last: Any, contacts: Any) -> KnownContacts:
+    told = ((word(p), number(a), number(b)) for p, a, b in map(listed, listed(contacts)))
+    return KnownContacts(number(first), number(last), tuple(told))
+
+
+KNOWN: HiddenText[Known] = HiddenText("known_contacts", _read, ())

@@ -1,0 +1,53 @@
+"""What is made from a result has its contacts, which are kept with it, until its take is edited."""
+
+from __future__ import annotations
+
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.accessors import current_action
+from hangtime.bridge.action_slots import all_curves
+from hangtime.bridge.properties.of_actions.known_contacts import known_contacts
+
+SLOWER = 1.5
+CUT = 0.51  # frames; contacts that the range cuts off end on a whole frame
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+def analysed(armature: bpy.types.Object) -> dict[str, tuple[float, float]]:
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    rows = armature.hangtime.contacts
+    return {row.name: (row.start_frame, row.end_frame) for row in rows}
+
+
+def test_a_result_of_a_result_has_the_same_contacts(adapted: bpy.types.Object) -> None:
+    (known,) = known_contacts(current_action(adapted))
+    assert bpy.ops.hangtime.start_from(result=True) == {"FINISHED"}
+    settings = adapted.hangtime
+    settings.use_range = True
+    settings.first_frame, settings.last_frame = round(known.first), round(known.last)
+    now = analysed(adapted)
+    assert len(now) == len(known.contacts)
+    for point, start, end in known.contacts:
+        own = [span for name, span in now.items() if name.startswith(point)]
+        assert any(span == pytest.approx((start, end), abs=CUT) for span in own), point
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    (again,) = known_contacts(current_action(adapted))
+    told = [span for _, *span in again.contacts]
+    assert told == [pytest.approx(span, abs=CUT) for _, *span in known.contacts]
+
+
+def test_a_take_that_was_retimed_since_is_looked_at(adapted: bpy.types.Object) -> None:
+    action = current_action(adapted)
+    (known,) = known_contacts(action)
+    assert bpy.ops.hangtime.start_from(result=True) == {"FINISHED"}
+    for curve in all_curves(action):
+        for key in curve.keyframe_points:
+            for point in (key.handle_left, key.handle_right, key.co):
+                point.x = known.first + SLOWER * (point.x - known.first)
+    adapted.hangtime.last_frame = round(known.first + SLOWER * (known.last - known.first))
+    landed = max(start for _, start, _ in known.contacts)
+    now = [start for start, _ in analysed(adapted).values()]
+    assert max(now) > landed + 40.0
