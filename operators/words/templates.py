@@ -211,7 +211,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "recording's frame rate.",
     faults.Treadmill: "While they stand, the feet slide along the floor at a steady {speed:.1f} "
     "m/s, as on a treadmill, so no place on the ground can hold them; add that speed to the hips' "
-    "motion, or choose a recording that moves over the ground.",
+    "motion, as the doctor's repair of drift does (Examine, or the command doctor), or choose a "
+    "recording that moves over the ground.",
     faults.OddHeight: "“{armature}” is {metres:.3g} m tall, so gravity does not fit its motion; "
     "import it again at {factor:plain} times the scale, or scale its object so.",
     faults.OddScale: "“scale = {scale:g}” makes the figure {metres:.3g} m tall, which nobody is; "

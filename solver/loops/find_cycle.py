@@ -13,14 +13,24 @@ import numpy as np
 
 from ..analysis.analyse import build_figure
 from ..analysis.grounding import parted
-from ..analysis.performance import Performance, find_contacts, perform
+from ..analysis.performance import Performance, contact_points, find_contacts, perform
 from ..analysis.take import take_of
 from ..arrays import FloatArray
+from ..body.character import Character
 from ..data.contacts import ContactSchedule
-from ..data.faults import CycleClimbs, CycleTurns, EndsTouchOtherwise, NothingRecurs, NotInLoop
+from ..data.faults import (
+    CycleClimbs,
+    CycleTurns,
+    EndsTouchOtherwise,
+    NothingRecurs,
+    NotInLoop,
+    Treadmill,
+)
 from ..data.loop import Cycle
 from ..data.problem import MotionProblem
 from ..data.recording import Recording
+from ..scene.belt import belt_speed
+from .repetition import repeated, repeating_range, without_held_ends
 
 NEAR_PERIOD = 0.3  # of the asked duration, by which the period may differ from it
 NEAR_START = 0.5  # of the period, by which the start may move
@@ -29,22 +39,24 @@ MAX_TURN = np.radians(20.0)
 MAX_CLIMB = 0.1  # m; floors are level, and captured runs bob by half of it from step to step
 
 
-def find_cycle(recording: Recording, problem: MotionProblem) -> Cycle:
-    """The cycle nearest to the problem's frames; these themselves where they are one.
+def find_cycle(recording: Recording, problem: MotionProblem) -> tuple[Cycle, Recording]:
+    """The cycle nearest to the problem's frames, these themselves where they are one; and the
+    recording that it is in, with itself before and after where it is known only by its ends.
 
-    Raises NothingRecurs, EndsTouchOtherwise, CycleTurns, CycleClimbs, ClipTooShort, MissingPart,
-    ZeroLengthBone.
+    Raises NothingRecurs, EndsTouchOtherwise, Treadmill, CycleTurns, CycleClimbs, ClipTooShort,
+    MissingPart, ZeroLengthBone.
     """
     within, character = build_figure(recording, problem)
-    take = take_of(recording, within)
-    take = replace(take, times=take.times - take.times[0])
-    performance = perform(take, character, problem.skin)
-    seams = _Seams(parted(find_contacts(performance, problem.scene)), take.rate)
-    asked = float(within.frames[0]), float(within.frames[-1])
-    first, count = _nearest(seams, take.frames, asked)
-    _require_level(performance, first, first + count)
-    frames = float(take.frames[first]), float(take.frames[first + count])
-    return Cycle(frames, asked)
+    search = _Search(problem, character, problem.frames or within.ends, recording.ends)
+    moving = without_held_ends(recording)
+    if search.asked[0] < moving.frames[0] or moving.frames[-1] < search.asked[1]:
+        return search.by_ends(moving) or search.by_contacts(recording, within)
+    try:
+        return search.by_contacts(recording, within)
+    except (NothingRecurs, EndsTouchOtherwise):
+        if found := search.by_ends(moving):
+            return found
+        raise
 
 
 def check_loop(problem: MotionProblem) -> None:
@@ -100,22 +112,78 @@ class _Seams:
         return float(np.median(near)) if near else None
 
 
-def _nearest(seams: _Seams, frames: FloatArray, asked: tuple[float, float]) -> tuple[int, int]:
-    """Index of the cycle's first frame in the take's, and its number of frames."""
-    start, end = (int(np.abs(frames - frame).argmin()) for frame in asked)
-    period = seams.period(start, end)
-    if period is None:
-        raise NothingRecurs(*asked)
-    whole = round(period * seams.rate)
-    # What is a cycle already stays one: detection is no better than a frame.
-    counts = [end - start] if abs(end - start - period * seams.rate) <= 1.0 else []
-    for count in dict.fromkeys([*counts, whole]):
-        reach = range(max(0, start - round(NEAR_START * count)), len(frames) - count)
-        found = [f for f in reach if f <= start + NEAR_START * count and seams.meet(f, f + count)]
-        if found:
-            return min(found, key=lambda f: abs(f - start)), count
-    at_ends = (seams.touching(f) for f in (start, min(start + whole, len(frames) - 1)))
-    raise EndsTouchOtherwise(*asked, whole, *at_ends)
+@dataclass(frozen=True)
+class _Search:
+    """What a cycle is sought near: first and last scene frame asked for; and those recorded."""
+
+    problem: MotionProblem
+    character: Character
+    asked: tuple[float, float]
+    recorded: tuple[float, float]
+
+    def by_contacts(self, recording: Recording, within: Recording) -> tuple[Cycle, Recording]:
+        """The cycle that contacts tell in a recording, which goes on beyond the range `within`."""
+        take = take_of(recording, within)
+        take = replace(take, times=take.times - take.times[0])
+        return self.cycle(self._performed(take)), recording
+
+    def by_ends(self, recording: Recording) -> tuple[Cycle, Recording] | None:
+        """The cycle that a range is whose ends meet, and that range with itself before and after;
+        None where there is none."""
+        performance = self._performed(recording)
+        ends = repeating_range(performance, self.asked, NEAR_PERIOD)
+        if ends is None:
+            return None
+        first, last = ends
+        _require_level(performance, first, last)
+        travel = (performance.com[last] - performance.com[first]) * [1.0, 1.0, 0.0]
+        endless = repeated(recording.part(slice(first, last + 1)), travel)
+        return self.cycle(self._performed(endless), last - first), endless
+
+    def _performed(self, recording: Recording) -> Performance:
+        return perform(recording, self.character, self.problem.skin)
+
+    def cycle(self, performance: Performance, known: int | None = None) -> Cycle:
+        """The cycle in a performance. known: how many frames it has, where that is.
+
+        Raises NothingRecurs, EndsTouchOtherwise, Treadmill, CycleTurns, CycleClimbs.
+        """
+        recording = performance.recording
+        schedule = parted(find_contacts(performance, self.problem.scene))
+        try:
+            first, count = self._nearest(_Seams(schedule, recording.rate), recording.frames, known)
+        except (NothingRecurs, EndsTouchOtherwise):
+            points, _ = contact_points(performance)
+            if speed := belt_speed(performance.times, points):
+                raise Treadmill(speed) from None  # which is why no foot is seen to stand
+            raise
+        _require_level(performance, first, first + count)
+        first_frame, last_frame = recording.frames[[first, first + count]].tolist()
+        return Cycle((first_frame, last_frame), self.asked)
+
+    def _nearest(self, seams: _Seams, frames: FloatArray, known: int | None) -> tuple[int, int]:
+        """Index of the cycle's first frame in `frames`, and its number of frames."""
+        start, end = (int(np.abs(frames - frame).argmin()) for frame in self.asked)
+        period = seams.period(start, end) if known is None else known / seams.rate
+        if period is None:
+            raise NothingRecurs(*self.asked)
+        whole = round(period * seams.rate)
+        # What is a cycle already stays one: detection is no better than a frame.
+        stays = known is None and abs(end - start - period * seams.rate) <= 1.0
+        for count in dict.fromkeys([end - start, whole] if stays else [whole]):
+            reach = range(max(0, start - round(NEAR_START * count)), len(frames) - count)
+            near = (f for f in reach if f <= start + NEAR_START * count)
+            found = [f for f in near if seams.meet(f, f + count)]
+            if found:
+                return min(found, key=lambda f: self._far(frames, f, count)), count
+        at_ends = (seams.touching(f) for f in (start, min(start + whole, len(frames) - 1)))
+        raise EndsTouchOtherwise(*self.asked, whole, *at_ends)
+
+    def _far(self, frames: FloatArray, first: int, count: int) -> tuple[bool, float]:
+        """How far a cycle is from what is asked for; any with a frame that is not recorded is
+        farther than all others."""
+        beyond = frames[first] < self.recorded[0] or frames[first + count] > self.recorded[1]
+        return bool(beyond), abs(float(frames[first]) - self.asked[0])
 
 
 def _require_level(performance: Performance, first: int, last: int) -> None:

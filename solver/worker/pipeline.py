@@ -251,7 +251,7 @@ def measure(recording: Recording, problem: MotionProblem) -> Subject:
     problem = scaled_problem(problem, factor)
     try:
         analysis, cycle = _analysed(scaled_recording(recording, factor), problem)
-    except UnseenSupport as fault:
+    except (UnseenSupport, Treadmill) as fault:
         raise _unscaled(fault, factor) from None
     unseen = tuple(_unscaled(each, factor) for each in analysis.unseen)
     away = floated(made, problem, float(analysis.performance.recording.frames[-1]))
@@ -270,7 +270,7 @@ def _analysed(recording: Recording, problem: MotionProblem) -> tuple[Analysis, C
     cycle = None
     if problem.loop:
         check_loop(problem)
-        cycle = find_cycle(recording, problem)
+        cycle, recording = find_cycle(recording, problem)
         problem = replace(problem, frames=cycle.frames)
     try:
         analysis = analyse(recording, problem)

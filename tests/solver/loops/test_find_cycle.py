@@ -7,10 +7,12 @@ import pytest
 from hangtime.operators.words.messages import sentence
 from hangtime.solver.data.faults import (
     ClipTooShort,
+    CycleClimbs,
     CycleTurns,
     Fault,
     NothingRecurs,
     NotInLoop,
+    Treadmill,
 )
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import Recording
@@ -29,9 +31,14 @@ def asked(first: float, last: float) -> MotionProblem:
     return MotionProblem(frames=(first, last), loop=True)
 
 
+def found(recording: Recording, first: float, last: float) -> tuple[float, float]:
+    """Frames of the cycle nearest to those."""
+    return find_cycle(recording, asked(first, last))[0].frames
+
+
 @pytest.mark.parametrize("frames", [(24, 115), (28, 110), (10, 130), (60, 167)])
 def test_range_becomes_a_whole_stride(frames: tuple[float, float]) -> None:
-    cycle = find_cycle(load_recording(RUN), asked(*frames))
+    cycle, _ = find_cycle(load_recording(RUN), asked(*frames))
     first, last = cycle.frames
     assert abs(last - first - STRIDE) <= FRAME + 1.0
     assert first == frames[0]  # nothing lands or leaves there, so the start stays
@@ -40,13 +47,51 @@ def test_range_becomes_a_whole_stride(frames: tuple[float, float]) -> None:
 
 def test_start_moves_away_from_a_landing() -> None:
     landing = 31.8
-    first, _ = find_cycle(load_recording(RUN), asked(32, 123)).frames
+    first, _ = found(load_recording(RUN), 32, 123)
     assert 2.0 < abs(first - landing) < 5.0
 
 
 def test_a_cycle_stays_one() -> None:
-    once = find_cycle(load_recording(RUN), asked(28, 110)).frames
-    assert find_cycle(load_recording(RUN), asked(*once)).frames == once
+    once = found(load_recording(RUN), 28, 110)
+    assert found(load_recording(RUN), *once) == once
+
+
+# Cut in a flight, while a foot stands, and just as one lands.
+@pytest.mark.parametrize("first", [28, 48, 35])
+def test_a_clip_of_one_cycle_is_one(first: float) -> None:
+    clip = load_recording("run_2.bvh").window(first, first + 95)
+    cycle, endless = find_cycle(clip, asked(*clip.ends))
+    assert cycle.frames[1] - cycle.frames[0] == 95
+    assert abs(cycle.frames[0] - first) <= 4.0
+    assert endless.frames[0] < first < first + 95 < endless.frames[-1]
+    assert find_cycle(clip, asked(*cycle.frames))[0].as_asked
+    assert find_cycle(held(clip, *cycle.frames), asked(*cycle.frames))[0].as_asked
+
+
+def held(clip: Recording, first: float, last: float) -> Recording:
+    """A clip with its end poses held, as Blender shows it beyond its keys, to as far as stated."""
+    begin, end = min(first, clip.frames[0]), max(last, clip.frames[-1])
+    frames = np.arange(begin, end + 1.0)
+    shown = np.clip(frames, *clip.ends) - clip.frames[0]
+    poses = replace(
+        clip, heads=clip.heads[shown.astype(int)], rotations=clip.rotations[shown.astype(int)]
+    )
+    return replace(poses, frames=frames, times=(frames - begin) / clip.rate)
+
+
+def test_a_clip_of_little_more_than_a_cycle_has_it_where_its_pose_comes_again() -> None:
+    clip = load_recording("run_2.bvh").window(21, 130)
+    first, last = found(clip, 21, 130)
+    assert abs(last - first - 95) <= FRAME
+    assert 21 <= first < last <= 130
+
+
+def test_contacts_go_on_across_the_seam_of_a_clip_of_one_cycle() -> None:
+    clip = load_recording("run_2.bvh").window(48, 143)
+    subject = measure(clip, asked(48, 143))
+    ends = (0.0, subject.schedule.duration)
+    cut = [{c.point for c in subject.schedule.contacts if t in (c.start, c.end)} for t in ends]
+    assert cut[0] == cut[1] != set()
 
 
 def standing() -> Recording:
@@ -62,6 +107,28 @@ def turning() -> Recording:
     return replace(recording, heads=heads, rotations=turn[:, None] @ recording.rotations)
 
 
+def on_treadmill() -> Recording:
+    """A run whose hips keep their place along the floor."""
+    recording = load_recording("run_2.bvh")
+    heads = recording.heads - np.linspace(0, 1, len(recording.frames))[:, None, None] * level_way(
+        recording
+    )
+    return replace(recording, heads=heads)
+
+
+def on_slope() -> Recording:
+    """A run that rises by a tenth of its way."""
+    recording = load_recording("run_2.bvh")
+    heads = recording.heads.copy()
+    way = np.linalg.norm((heads[:, :1] - heads[:1, :1])[..., :2], axis=2)
+    heads[..., 2] += 0.1 * way
+    return replace(recording, heads=heads)
+
+
+def level_way(recording: Recording) -> np.ndarray:
+    return (recording.heads[-1, 0] - recording.heads[0, 0]) * [1.0, 1.0, 0.0]
+
+
 @pytest.mark.parametrize(
     ("recording", "frames", "fault", "says"),
     [
@@ -69,6 +136,8 @@ def turning() -> Recording:
         (load_recording, (24, 67), NothingRecurs, "one landing of a foot to its next"),
         (standing, (1, 90), NothingRecurs, "Nothing repeats from frame 1 to 90"),
         (turning, (100, 172), CycleTurns, "only a straight cycle"),
+        (on_treadmill, (28, 122), Treadmill, "as the doctor's repair of drift does"),
+        (on_slope, (28, 110), CycleClimbs, "only a cycle on level ground"),
     ],
 )
 def test_what_is_no_cycle_is_said(
