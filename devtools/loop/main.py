@@ -67,7 +67,7 @@ def solved(run: Run) -> tuple[AdaptationResult, Played]:
 def measured(result: AdaptationResult, played: Played) -> Iterator[tuple[str, float]]:
     """Every figure of one loop."""
     motion, cycle = result.adaptation.motion, present(result.subject.cycle)
-    loop = loop_report(motion, cycle)
+    loop = loop_report(motion, cycle, result.subject.analysis.performance.com)
     yield "solved", float(result.fault is None)
     yield "seam, as Blender plays it: pose", 1000.0 * played.seam_pose()
     yield "seam, as Blender plays it: velocity", 1000.0 * played.seam_velocity()

@@ -22,6 +22,7 @@ AS_RECORDED = {
 }
 FAR_OFF = 0.05  # m, beside the take; a blend of less is hardly seen
 LURCH = 0.5  # m/s, by which a blend's hips are faster than the take's; of less, likewise
+LEAST_TURNED = 1.0  # degrees, of a loop's way; a recorded one weaves by about as much
 FITS = (CertificateItem.FIT_RMS, CertificateItem.FIT_WORST_FRAME)
 
 # What may be done about keys that do not show what was solved.
@@ -64,11 +65,20 @@ def headline(report: Report) -> list[str]:
         return [sentence(NoSolution(report.status, fit_off_cm=next(fit, 0.0)))]
     accepted = accepted_lines(report.needs)
     told = [nearness(report.fit_to_recording), *accepted, *lifted_lines(report)]
-    told += given_up_lines(report) + blend_lines(report.blends)
+    told += given_up_lines(report) + blend_lines(report.blends) + turned_lines(report)
     told += [AS_RECORDED[report.durations]] if report.durations in AS_RECORDED else []
     told += [line_told(line) for line in most_telling(report.failed)]
     missed = [missed_line(report.missed_contacts)] if report.missed_contacts else []
     return [*missed, _solved(report), *(f"  {line}" for line in told)]
+
+
+def turned_lines(report: Report) -> list[str]:
+    """A loop that goes elsewhere than the recorded cycle, if it is one: a line."""
+    degrees = 0.0 if report.loop is None else report.loop.turned_deg
+    if abs(degrees) < LEAST_TURNED:
+        return []
+    side = "left" if degrees > 0.0 else "right"
+    return [f"The loop goes {abs(degrees):.1f}° further to the {side} than the recorded cycle"]
 
 
 def missed_line(missed: Sequence[MissedContact]) -> str:

@@ -20,6 +20,7 @@ from .headline import (
     line_told,
     most_telling,
     plain,
+    turned_lines,
     with_unit,
 )
 from .messages import length
@@ -91,6 +92,7 @@ def loop_lines(report: Report) -> list[str]:
     return [
         f"Loop: frames {frames}, {loop.travel_m:.2f} m a cycle at {loop.speed_m_s:.2f} m/s",
         f"At the seam pose, speed and force differ by {', '.join(seam)}",
+        *turned_lines(report),
     ]
 
 

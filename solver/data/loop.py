@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+LEAST_TRAVEL = 0.3  # m a cycle; what goes less far, as on the spot, has no course
+
 
 @dataclass(frozen=True)
 class Cycle:

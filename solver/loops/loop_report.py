@@ -5,13 +5,14 @@ import numpy as np
 from ..arrays import FloatArray
 from ..body.kinematics import BodyPoint
 from ..data.constants import STANDARD_GRAVITY
-from ..data.loop import Cycle
+from ..data.loop import LEAST_TRAVEL, Cycle
 from ..data.reports.loop import LoopReport
 from ..transcription.motion import Motion
 
 
-def loop_report(motion: Motion, cycle: Cycle) -> LoopReport:
-    """Of the motion itself, whatever is written of it. cycle: the frames that it is of."""
+def loop_report(motion: Motion, cycle: Cycle, recorded: FloatArray) -> LoopReport:
+    """Of the motion itself, whatever is written of it. cycle: the frames that it is of. recorded:
+    (T, 3) m, the recording's centre of mass in them."""
     ends = np.array([0.0, motion.duration])
     com = motion.com(ends)
     travel = (com[1] - com[0]) * [1.0, 1.0, 0.0]
@@ -30,7 +31,16 @@ def loop_report(motion: Motion, cycle: Cycle) -> LoopReport:
         seam_pose_mm=1000.0 * float(apart.max()),
         seam_velocity_mm_s=1000.0 * _furthest(velocities),
         seam_force_bw=_furthest(forces),
+        turned_deg=_turned(recorded[-1] - recorded[0], travel),
     )
+
+
+def _turned(recorded: FloatArray, travel: FloatArray) -> float:
+    """Degrees between the level directions of two ways (3,), m."""
+    (x, y), (u, v) = recorded[:2], travel[:2]
+    if min(np.hypot(x, y), np.hypot(u, v)) < LEAST_TRAVEL:
+        return 0.0
+    return float(np.degrees(np.arctan2(x * v - y * u, x * u + y * v)))
 
 
 def _furthest(ends: FloatArray) -> float:

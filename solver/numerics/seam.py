@@ -29,18 +29,16 @@ class Seam:
 
     @staticmethod
     def of(
-        basis: SplineBasis, active: BoolArray, smooth: Sequence[Sequence[int]], sampled: range
+        basis: SplineBasis, active: BoolArray, smooth: Sequence[FloatArray], sampled: range
     ) -> "Seam":
-        """active: (K, n), which unknowns exist. smooth: by order of the derivative, the columns of
-        splines that are the same at both ends. sampled: those of piecewise linear functions that
-        are; a span's two values are in the middle two of its four blocks."""
+        """active: (K, n), which unknowns exist. smooth: by order of the derivative, (k, n) the sums
+        of splines that are the same at both ends. sampled: columns of piecewise linear functions
+        that are; a span's two values are in the middle two of its four blocks."""
         ends = basis.breaks[[0, -1]], np.array([0, basis.n_spans - 1])
         rows = []
-        for order, columns in enumerate(smooth):
+        for order, sums in enumerate(smooth):
             weights = TIME**order * basis.evaluate(ends[0], order, ends[1])  # (2, 4)
-            made = np.zeros((2, len(columns), ORDER, active.shape[1]))
-            made[:, np.arange(len(columns)), :, columns] = weights
-            rows.append(made)
+            rows.append(weights[:, None, :, None] * sums[:, None])
         made = np.zeros((2, len(sampled), ORDER, active.shape[1]))
         for side, block in enumerate((1, ORDER - 2)):
             made[side, np.arange(len(sampled)), block, sampled] = 1.0

@@ -15,6 +15,7 @@ from ..arrays import FloatArray
 from ..constraints.constraint_builder import build_constraints
 from ..constraints.evaluation_context import EvaluationContext
 from ..data.contacts import ContactSchedule
+from ..data.loop import LEAST_TRAVEL
 from ..data.problem import MotionProblem
 from ..data.recording import Recording
 from ..data.requests import AngleLimit, ConeLimit, Requests, TwistLimit
@@ -148,7 +149,8 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     durations, price = Durations.MOVING_GROUND, _price(fit, reference, requests)
     if not target.moves:  # the ground's clock is no jumper's to stretch
         context, start, durations = _anticipated(fit, problem, context, start, target.places, price)
-    start = _with_constraints(_riding(start, asked.fitted, target), problem, context)
+    start = _on_course(_riding(start, asked.fitted, target), fit.motion)
+    start = _with_constraints(start, problem, context)
     same = start.transcription.basis is fit.motion.transcription.basis and reference is fit.motion
     weights = _cost_weights(requests)
     kept = same and weights is ADAPT_COST_WEIGHTS and price is not None
@@ -216,6 +218,18 @@ def _riding(start: Motion, fitted: Standing, target: Standing) -> Motion:
     """The initial guess with contacts that ride on what the target has them stand on."""
     t, moves = start.transcription, fitted.moves or target.moves
     return replace(start, transcription=t.riding(target.rides)) if moves else start
+
+
+def _on_course(start: Motion, fitted: Motion) -> Motion:
+    """The initial guess of a motion that repeats, which goes where the fit does: a stance that is
+    moved is so in every cycle, but to turn all of them takes less change than to place one foot
+    elsewhere each time."""
+    travel = np.diff(fitted.com(np.array([0.0, fitted.duration])), axis=0)[0, :2]
+    length = float(np.linalg.norm(travel))
+    if not start.transcription.periodic or length < LEAST_TRAVEL:
+        return start
+    x, y = (travel / length).tolist()
+    return replace(start, transcription=replace(start.transcription, course=(x, y)))
 
 
 def _weighs_torques(requests: Requests) -> bool:

@@ -132,14 +132,20 @@ class PointContact:
         return np.asarray(self.ride.poses(times).turn @ self.normal)
 
 
+def cut_by_seam(contacts: Sequence[PointContact], duration: float) -> list[tuple[int, int]]:
+    """Indices of the two parts of each contact that the seam of a motion that repeats cuts: the one
+    at its start, and the one at its end."""
+    starting = {c.point: i for i, c in enumerate(contacts) if c.contact.start <= 0.0}
+    ending = {c.point: i for i, c in enumerate(contacts) if c.contact.end >= duration}
+    return [(starting[point], ending[point]) for point in starting if point in ending]
+
+
 def tied_places(
     places: FloatArray, contacts: Sequence[PointContact], duration: float
 ) -> FloatArray:
     """Places (n_contacts, 3) m of a motion that repeats: the parts of contacts that its seam cuts
     are equally far apart, level. Each is moved half of the way there."""
-    starting = {c.point: i for i, c in enumerate(contacts) if c.contact.start <= 0.0}
-    ending = {c.point: i for i, c in enumerate(contacts) if c.contact.end >= duration}
-    cut = [(starting[point], ending[point]) for point in starting if point in ending]
+    cut = cut_by_seam(contacts, duration)
     if not cut:
         return places
     first, last = np.array(cut).T

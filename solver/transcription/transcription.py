@@ -35,7 +35,7 @@ from ..numerics.seam import Seam
 from ..numerics.splines import ORDER, SplineBasis, gauss_instants
 from ..unseen.support_force import N_POINTS, SupportForce
 from .constraint import Constraint, DiscretisedConstraint
-from .contact_pins import Pins, PointContact, touching_spans
+from .contact_pins import Pins, PointContact, cut_by_seam, touching_spans
 from .friction_cones import FrictionCones
 from .guard_rows import GuardRows
 from .ride import Ride
@@ -54,6 +54,8 @@ class Transcription:
     mass. support: what carries the body where nothing that is known does. guards: at most one of a
     kind. active: which unknowns exist. discretised: the constraints on this basis, guards last.
     periodic: whether the motion repeats, so that its last instant is tied to its first (`seam`).
+    course: x and y of the direction in which it then goes, where no contact that the seam cuts says
+    so; None any.
     """
 
     character: Character
@@ -64,6 +66,7 @@ class Transcription:
     constraints: tuple[Constraint, ...] = ()
     guards: tuple[GuardRows, ...] = ()
     periodic: bool = False
+    course: tuple[float, float] | None = None
     support: SupportForce | None = None
     seam: Seam | None = field(init=False)
     layout: Layout = field(init=False)
@@ -198,11 +201,14 @@ class Transcription:
         The centre of mass has gone somewhere, level: how far is for the solver to say, or for
         contacts that the seam cuts. Its acceleration follows from the forces.
         """
-        layout = self.layout
-        com, angles, forces = (
-            range(part.start, part.stop) for part in (layout.com, layout.angles, layout.forces)
-        )
-        smooth = [[com[-1], *angles], [*com, *angles], [*angles]]
+        layout, each = self.layout, np.eye(self.layout.n_block)
+        com, angles = each[layout.com], each[layout.angles]
+        same = [com[2:], angles]
+        if self.course is not None and not cut_by_seam(self.contacts, self.basis.breaks[-1]):
+            x, y = self.course
+            same.append((x * com[1] - y * com[0])[None])
+        smooth = [np.concatenate(same), np.concatenate([com, angles]), angles]
+        forces = range(layout.forces.start, layout.forces.stop)
         return Seam.of(self.basis, self.active, smooth, forces)
 
     def window(self, x: FloatArray, spans: IntArray) -> FloatArray:

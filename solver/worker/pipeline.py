@@ -232,7 +232,8 @@ class AdaptationResult:
         )
         if cycle is None:
             return made
-        return replace(made, loop=loop_report(self.adaptation.motion, cycle))
+        recorded = self.subject.analysis.performance.com
+        return replace(made, loop=loop_report(self.adaptation.motion, cycle, recorded))
 
 
 def measure(recording: Recording, problem: MotionProblem) -> Subject:

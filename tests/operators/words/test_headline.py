@@ -8,6 +8,7 @@ from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.reports.constraints import ConstraintReport
 from hangtime.solver.data.reports.jumps import LiftedFlight
 from hangtime.solver.data.reports.keys import BlendReport
+from hangtime.solver.data.reports.loop import LoopReport
 from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.status import Durations
@@ -81,6 +82,15 @@ def test_durations_that_were_sought_in_vain_are_told(durations: Durations) -> No
     lines = headline(replace(made, durations=durations))
     in_vain = durations in (Durations.NONE_FOUND, Durations.NOT_MET)
     assert any("Durations are as recorded" in line for line in lines) == in_vain
+
+
+def test_a_loop_that_goes_elsewhere_than_the_recorded_cycle_is_told() -> None:
+    problem = MotionProblem()
+    made = report(adapt(fitted_hop(), problem), problem, Origin("hop"))
+    loop = LoopReport(28.0, 123.0, 28.0, 122.0, 2.1, 2.7, 0.0, 0.0, 0.0)
+    turned = replace(made, loop=replace(loop, turned_deg=-5.04))
+    assert headline(replace(made, loop=loop)) == headline(made)
+    assert "  The loop goes 5.0° further to the right than the recorded cycle" in headline(turned)
 
 
 def test_where_nothing_gave_way_nothing_is_said_of_it() -> None:

@@ -8,13 +8,17 @@ from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.solver.data.contacts import PhaseKind
 from hangtime.solver.data.faults import SeamStanceMoved
+from hangtime.solver.data.loop import Cycle
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.fitting.fit import Fit, fit
+from hangtime.solver.loops.loop_report import loop_report
+from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.solver.stages.implicit import adapt
-from hangtime.solver.transcription.motion import dynamics_residual
+from hangtime.solver.transcription.motion import Motion, dynamics_residual
 from hangtime.tests.helpers.clips import load_recording
 
 RUN = "run_2.bvh"
+LEFT = (0.15, 0.0, 0.0)  # m, of one who runs towards -y
 CUTS = {"in flight": (28, 122), "in a stance": (45, 139)}  # frames of one cycle
 
 
@@ -78,6 +82,31 @@ def test_a_moved_stance_leaves_it_a_loop(cycle: Fit) -> None:
     ends = np.array([0.0, motion.duration])
     np.testing.assert_allclose(*motion.angles(ends), atol=1e-6)
     np.testing.assert_allclose(*motion.com(ends, 1), atol=1e-6)
+
+
+@pytest.mark.parametrize("cut", CUTS)
+def test_a_stance_moved_aside_leaves_the_course(cut: str) -> None:
+    """Every cycle has that foot there, and the other where it was: nothing turns."""
+    cycle = looped(cut)
+    adapted = adapt(cycle, MotionProblem(pins=(Pin("Aside", "ground 2", offset=LEFT),), loop=True))
+    assert adapted.solved
+    assert course(adapted.motion) == pytest.approx(course(cycle.motion), abs=0.01)
+    report = loop_report(adapted.motion, Cycle((28.0, 122.0), (28.0, 122.0)), cycle.performance.com)
+    assert abs(report.turned_deg) < 1.0
+
+
+def test_the_report_tells_how_far_the_way_is_turned() -> None:
+    motion = looped("in a stance").motion
+    turned = axis_rotation(2, np.radians(-5.0))
+    way = motion.com(np.array([0.0, motion.duration])) @ turned.T
+    report = loop_report(motion, Cycle((45.0, 139.0), (45.0, 139.0)), way)
+    assert report.turned_deg == pytest.approx(5.0, abs=1e-6)
+
+
+def course(motion: Motion) -> float:
+    """Direction of a cycle's way, degrees."""
+    x, y, _ = np.diff(motion.com(np.array([0.0, motion.duration])), axis=0)[0]
+    return float(np.degrees(np.arctan2(y, x)))
 
 
 def test_a_torn_stance_is_refused() -> None:
