@@ -65,6 +65,8 @@ def _variant(fault: Fault) -> int:
     match fault:
         case faults.NoArmature():
             return fault.object_name is not None
+        case faults.CycleClimbs():
+            return fault.metres < 0.0
         case faults.NotMirrored():
             return 2 if fault.bone and fault.bone == fault.partner else bool(fault.bone)
         case faults.MissingPart():

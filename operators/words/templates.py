@@ -59,8 +59,12 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "keys for a whole cycle.",
     faults.CycleTurns: "From the cycle's first to its last frame the body turns by {degrees:.0f}°, "
     "and only a straight cycle can repeat; choose frames in which it goes straight.",
-    faults.CycleClimbs: "The body is {metres:+.2f} m higher at the cycle's end than at its start, "
-    "and only a cycle on level ground can repeat; choose frames on one level.",
+    faults.CycleClimbs: (
+        "The body is {metres:.2f} m higher at the cycle's end than at its start, and only a cycle "
+        "on level ground can repeat; choose frames on one level.",
+        "The body is {down:.2f} m lower at the cycle's end than at its start, and only a cycle on "
+        "level ground can repeat; choose frames on one level.",
+    ),
     faults.NotInLoop: "A loop cannot have {what}; take that away, or switch the loop off.",
     faults.SeamStanceMoved: "The pin moves “{name}”, which the loop's seam cuts in two, so the two "
     "parts would not meet; move all of that stance, or begin the loop where that foot is in the "

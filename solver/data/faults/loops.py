@@ -33,9 +33,13 @@ class CycleTurns(Fault):
 
 @dataclass
 class CycleClimbs(Fault):
-    """The body is higher or lower at the cycle's end, m."""
+    """The body is higher or, with less than 0, lower at the cycle's end, m."""
 
     metres: float
+
+    @property
+    def down(self) -> float:
+        return -self.metres
 
 
 @dataclass

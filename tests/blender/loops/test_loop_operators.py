@@ -51,6 +51,21 @@ def test_a_run_becomes_a_loop(run: bpy.types.Object) -> None:
     np.testing.assert_allclose(again.heads, once.heads + travel, atol=5e-5)
 
 
+@pytest.mark.slow
+def test_an_accepted_loop_can_be_looped_again(run: bpy.types.Object) -> None:
+    settings = run.hangtime
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    cycle = settings.first_frame, settings.last_frame
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    assert bpy.ops.hangtime.accept() == {"FINISHED"}
+    assert bpy.ops.hangtime.start_from(result=True) == {"FINISHED"}
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert (settings.first_frame, settings.last_frame) == cycle
+    settings.stances["ground 2"].left = 0.1
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    assert f"Loop: frames {cycle[0]} to {cycle[1]}" in settings.status
+
+
 def test_loop_ticked_after_the_analysis_asks_for_another(run: bpy.types.Object) -> None:
     run.hangtime.loop.use = False
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}

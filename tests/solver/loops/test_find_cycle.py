@@ -56,14 +56,17 @@ def test_a_cycle_stays_one() -> None:
     assert found(load_recording(RUN), *once) == once
 
 
-# Cut in a flight, while a foot stands, and just as one lands.
-@pytest.mark.parametrize("first", [28, 48, 35])
-def test_a_clip_of_one_cycle_is_one(first: float) -> None:
-    clip = load_recording("run_2.bvh").window(first, first + 95)
+# Runs cut in a flight, while a foot stands, and just as one lands; and hops.
+@pytest.mark.parametrize(
+    ("name", "first", "count"),
+    [("run_2.bvh", 28, 95), ("run_2.bvh", 48, 95), ("run_2.bvh", 35, 95), (HOPS, 561, 87)],
+)
+def test_a_clip_of_one_cycle_is_one(name: str, first: int, count: int) -> None:
+    clip = load_recording(name).window(first, first + count)
     cycle, endless = find_cycle(clip, asked(*clip.ends))
-    assert cycle.frames[1] - cycle.frames[0] == 95
+    assert cycle.frames[1] - cycle.frames[0] == count
     assert abs(cycle.frames[0] - first) <= 4.0
-    assert endless.frames[0] < first < first + 95 < endless.frames[-1]
+    assert endless.frames[0] < first < first + count < endless.frames[-1]
     assert find_cycle(clip, asked(*cycle.frames))[0].as_asked
     assert find_cycle(held(clip, *cycle.frames), asked(*cycle.frames))[0].as_asked
 
@@ -116,12 +119,20 @@ def on_treadmill() -> Recording:
     return replace(recording, heads=heads)
 
 
-def on_slope() -> Recording:
-    """A run that rises by a tenth of its way."""
+def uphill() -> Recording:
+    return on_slope(0.1)
+
+
+def downhill() -> Recording:
+    return on_slope(-0.1)
+
+
+def on_slope(steepness: float) -> Recording:
+    """A run that rises by a share of its way."""
     recording = load_recording("run_2.bvh")
     heads = recording.heads.copy()
     way = np.linalg.norm((heads[:, :1] - heads[:1, :1])[..., :2], axis=2)
-    heads[..., 2] += 0.1 * way
+    heads[..., 2] += steepness * way
     return replace(recording, heads=heads)
 
 
@@ -137,7 +148,8 @@ def level_way(recording: Recording) -> np.ndarray:
         (standing, (1, 90), NothingRecurs, "Nothing repeats from frame 1 to 90"),
         (turning, (100, 172), CycleTurns, "only a straight cycle"),
         (on_treadmill, (28, 122), Treadmill, "as the doctor's repair of drift does"),
-        (on_slope, (28, 110), CycleClimbs, "only a cycle on level ground"),
+        (uphill, (28, 110), CycleClimbs, "m higher at the cycle's end"),
+        (downhill, (28, 122), CycleClimbs, "m lower at the cycle's end"),
     ],
 )
 def test_what_is_no_cycle_is_said(
