@@ -8,8 +8,16 @@ from contextlib import contextmanager
 import bpy
 import numpy as np
 
-from ...solver.data.faults import BlendedAction, Fault, NoAction, UnreadStrips
-from ..accessors import IN_STRIP, assigned_action, mapped_strip, take_strips
+from ...solver.data.faults import (
+    BlendedAction,
+    Fault,
+    NoAction,
+    PosedByOthers,
+    ScaledStrip,
+    UnreadStrips,
+    UnseenSupport,
+)
+from ..accessors import IN_STRIP, assigned_action, mapped_strip, pose_of, take_strips
 from ..action_slots import all_curves, alone
 from ..fake_users import free_copy
 from ..played_strips import (
@@ -25,6 +33,7 @@ from ..played_strips import (
 )
 from . import fcurves
 
+SAME_SCALE = 1e-3  # of a strip, to which it is none
 _TRIPLES = ("co", "handle_left", "handle_right")
 
 
@@ -38,16 +47,36 @@ def strip_time(owner: bpy.types.Object, action: bpy.types.Action) -> StripTime |
 def why_no_action(owner: bpy.types.Object) -> Fault:
     """Why nothing that animates an object can be read as a recording."""
     data, strips = owner.animation_data, visible_strips(owner)
-    if data is None or data.action is not None:
-        return NoAction(owner.name)
-    unseen = [strip for track in data.nla_tracks for strip in track.strips]
-    if not strips and not unseen:
-        return NoAction(owner.name)
+    unseen = [strip for track in data.nla_tracks for strip in track.strips] if data else []
+    if data is None or data.action is not None or not unseen:
+        leaders = _leaders(owner)
+        return PosedByOthers(owner.name, leaders) if leaders else NoAction(owner.name)
     silent = UNUSED if not data.use_nla else MUTED if len(unseen) == 1 else ALL_MUTED
     why = why_unread(owner, strips) if strips else silent
     if why is None:
         return NoAction(owner.name)
     return UnreadStrips(owner.name, tuple(strip.name for strip in strips or unseen), why)
+
+
+def _leaders(owner: bpy.types.Object) -> tuple[str, ...]:
+    """Other armatures after which constraints pose an armature's bones, as in a retarget."""
+    each = (c for bone in pose_of(owner).bones for c in bone.constraints if not c.mute)
+    things = (getattr(constraint, "target", None) for constraint in each)
+    led = (t.name for t in things if t is not None and t != owner and t.type == "ARMATURE")
+    return tuple(dict.fromkeys(led))
+
+
+def wrong_speed(owner: bpy.types.Object, action: bpy.types.Action, told: UnseenSupport) -> Fault:
+    """What makes a body fall at another frame rate than the scene's: the scale of the strip that
+    plays the recording, where there is one, else the rate itself."""
+    strip = mapped_strip(owner, action)
+    scale = time_of(strip).scale if strip is not None else 1.0
+    if strip is None or told.rate is None or abs(scale - 1.0) < SAME_SCALE:
+        return told
+    fitting = scale * told.scene_rate / told.rate
+    return ScaledStrip(
+        told.first, told.last, told.rate, told.scene_rate, strip.name, scale, fitting
+    )
 
 
 def require_unstarred(owner: bpy.types.Object) -> None:

@@ -10,6 +10,7 @@ import bpy
 from ...bridge.accessors import current_action, present, shown_range, source_of
 from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.incremental import Incremental
+from ...bridge.armature.played import wrong_speed
 from ...bridge.armature.traces_store import keep
 from ...bridge.constraints.bone_mapping import evidence_of, find_parts, missing_parts
 from ...bridge.constraints.motion_problem import analysis_is_of, problem_of, span_of, write_analysis
@@ -206,7 +207,7 @@ def analysis(
     unseen = [each for each in answer.unseen if isinstance(each, UnseenSupport)]
     for each in unseen:
         if each.rate is not None:  # nothing carries: the scene plays it at a wrong speed
-            raise each
+            raise wrong_speed(armature, present(recorded_action(armature)), each)
     boxes = [box for each in unseen for box in each.boxes]
     if boxes:
         session().support = (armature.session_uid, tuple(boxes))

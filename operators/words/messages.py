@@ -15,6 +15,7 @@ from .templates import (
     DAMAGED,
     MISSED,
     MORE_DAMAGES,
+    MORE_NAMES,
     OUTCOMES,
     PLACES,
     TEMPLATES,
@@ -22,6 +23,7 @@ from .templates import (
 
 Translate = Callable[[str], str]
 MOST_DAMAGES = 2  # told with a failure; the doctor tells all
+FEW = 4  # names of a list that tells a rigger which bones are meant
 
 
 def sentence(fault: Fault, translate: Translate = str) -> str:
@@ -113,6 +115,8 @@ class _Formatter(Formatter):
         match format_spec:
             case "names":
                 return ", ".join(value) or "none"
+            case "few":
+                return _few(value, self._translate)
             case "spans":
                 return ", ".join(f"{first:g} to {last:g}" for first, last in value)
             case "numbers":
@@ -140,6 +144,13 @@ class _Formatter(Formatter):
         at_end = violation.kind is RowKind.RANGE and violation.amount == 0.0
         template = AT_ITS_END if at_end else MISSED[violation.kind]
         return self.format(self._translate(template), violation)
+
+
+def _few(names: Sequence[str], translate: Translate) -> str:
+    """The first names of a list, and how many more there are."""
+    told = ", ".join(names[:FEW])
+    more = len(names) - FEW
+    return translate(MORE_NAMES).format(told, more) if more > 0 else told
 
 
 def _damages(found: Sequence[faults.Damage], translate: Translate) -> str:

@@ -1,4 +1,4 @@
 """Translations of what the artist reads, as `bpy.app.translations.register` takes them."""
 
-# By locale ("de_DE"): of (context, English), which is "*" and a template of templates.py.
+# By locale ("de_DE"): of (context, English), which is "*" and one of `templates`.
 TRANSLATIONS: dict[str, dict[tuple[str, str], str]] = {}

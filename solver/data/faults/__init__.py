@@ -46,6 +46,7 @@ from .recordings import UnreadableClip as UnreadableClip
 from .recordings import UnreadableRepairs as UnreadableRepairs
 from .recordings import UnreadableText as UnreadableText
 from .recordings import UnreadStrips as UnreadStrips
+from .recordings import ScaledStrip as ScaledStrip
 from .recordings import UnseenSupport as UnseenSupport
 from .recordings import UnseenSupports as UnseenSupports
 from .recordings import ZeroLengthBone as ZeroLengthBone
@@ -94,6 +95,7 @@ from .requests import WrongWeights as WrongWeights
 from .rigs import DrivenBones as DrivenBones
 from .rigs import HeldBones as HeldBones
 from .rigs import NoControls as NoControls
+from .rigs import PosedByOthers as PosedByOthers
 from .rigs import PulledFromOutside as PulledFromOutside
 from .scenes import GroundNotThere as GroundNotThere
 from .scenes import InsideOut as InsideOut

@@ -256,6 +256,21 @@ class UnseenSupport(Fault):
 
 
 @dataclass
+class ScaledStrip(Fault):
+    """The body falls at another frame rate than the scene's (as of `UnseenSupport`), while a strip
+    plays its action slower or faster. scale: the strip's; fitting_scale: with which it would fall
+    as gravity has it."""
+
+    first: float
+    last: float
+    rate: int
+    scene_rate: float
+    strip: str
+    scale: float
+    fitting_scale: float
+
+
+@dataclass
 class UnseenSupports(Fault):
     """The same in several spans (first, last frame), of which no more is known."""
 

@@ -6,6 +6,14 @@ from .base import Fault
 
 
 @dataclass
+class PosedByOthers(Fault):
+    """The armature has no keys, while constraints pose its bones after these other objects."""
+
+    armature: str
+    others: tuple[str, ...]
+
+
+@dataclass
 class NoControls(Fault):
     """Constraints pose these bones, and no bone that can be posed turns them by itself."""
 

@@ -6,19 +6,20 @@ import importlib
 import inspect
 import pkgutil
 from string import Formatter
+from types import ModuleType
 from typing import get_type_hints
 
 import hangtime.solver
 import pytest
 from hangtime.devtools.doctor.damages import stretched
-from hangtime.operators.words import templates
 from hangtime.operators.words.messages import sentence, together
-from hangtime.operators.words.templates import MISSED, OUTCOMES, TEMPLATES
+from hangtime.operators.words.templates import MISSED, OUTCOMES, TEMPLATES, faults, outcomes, rigs
 from hangtime.solver.data.faults import (
     BadRecipe,
     Damage,
     Fault,
     MissingPart,
+    NoControls,
     NoFit,
     NoSolution,
     RequestFault,
@@ -100,7 +101,8 @@ def test_every_template_can_be_filled(kind: type[Fault]) -> None:
         assert "{" not in words
 
 
-def test_every_template_is_one_literal_for_translators() -> None:
+@pytest.mark.parametrize("templates", [faults, outcomes, rigs])
+def test_every_template_is_one_literal_for_translators(templates: ModuleType) -> None:
     body = ast.parse(inspect.getsource(templates)).body
     tables = [each.value for each in body if isinstance(each, ast.Assign | ast.AnnAssign)]
     built = ast.JoinedStr, ast.BinOp, ast.Call
@@ -200,6 +202,16 @@ def test_support_of_which_nothing_is_known_is_told_at_once() -> None:
     legs = UnseenSupport(60.0, 70.0, exchanged=True)
     assert together([legs, bare[0]]) == [legs, bare[0]]
     assert "the left leg for the right one; exchange them back" in sentence(legs)
+
+
+def test_of_many_bones_the_first_are_named_and_the_others_counted() -> None:
+    bones = tuple(f"Bone{i}" for i in range(23))
+    told = sentence(NoControls(bones))
+    assert "The bones Bone0, Bone1, Bone2, Bone3 and 19 more follow constraints" in told
+    assert "Bone4" not in told
+    assert "The bones Bone0, Bone1 follow" in sentence(NoControls(bones[:2]))
+    german = sentence(NoControls(bones), lambda text: text.replace("and {} more", "u. {} weitere"))
+    assert "Bone3 u. 19 weitere follow" in german
 
 
 def test_a_recipe_fault_names_its_line() -> None:

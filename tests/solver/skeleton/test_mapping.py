@@ -56,6 +56,14 @@ def test_conventions_are_recognised(key: str) -> None:
     assert Evidence.DISPUTED not in guess.evidence.values()
 
 
+def test_unreal_5_is_told_by_its_spine_and_neck_without_a_metahumans_face() -> None:
+    """Manny's skeleton as it is exported without corrective bones."""
+    whole = rest_bones(RIGS["metahuman"], actor())
+    bones = [replace(b, name="ik_foot_root" if "FACIAL" in b.name else b.name) for b in whole]
+    bones = [replace(b, name=b.name.replace("correctiveRoot", "bulge")) for b in bones]
+    assert guess_bones(tree_of(bones)).convention == "Unreal 5 (Manny, MetaHuman)"
+
+
 def test_there_is_a_rig_of_every_convention_asked_for() -> None:
     tables = {convention.name for convention in conventions()}
     assert {RIGS[key].name for key in KNOWN} <= tables

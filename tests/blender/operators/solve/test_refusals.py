@@ -21,6 +21,7 @@ from hangtime.bridge.constraints.motion_problem import analysis_is_of, analysis_
 from hangtime.bridge.rows.phases import phases_of
 from hangtime.operators.solve.adapt import read_wanted
 from hangtime.solver.data.recording import POSE_TOLERANCE
+from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.blender.helpers.actions import curves_of
 from hangtime.tests.blender.helpers.jump_scene import (
     FIRST,
@@ -51,6 +52,14 @@ def no_action(armature: bpy.types.Object) -> None:
 
 def empty_action(armature: bpy.types.Object) -> None:
     armature.animation_data.action = bpy.data.actions.new("Nothing")
+
+
+def posed_by_another(armature: bpy.types.Object) -> None:
+    source = rigs.make_armature()
+    source.name, armature.animation_data.action = "Source", None
+    bpy.context.view_layer.objects.active = armature
+    for bone in armature.pose.bones:
+        bone.constraints.new("COPY_ROTATION").target = source
 
 
 def edit_mode(_armature: bpy.types.Object) -> None:
@@ -136,6 +145,7 @@ def assert_refused(operator: Callable[[], set[str]], armature: bpy.types.Object,
         (another_object, "“Cube” is or holds no armature"),
         (no_action, "has no keyframes"),
         (empty_action, "has no keyframes"),
+        (posed_by_another, "has no keyframes: constraints pose it after Source; bake it (Pose >"),
         (muted_strip, "cannot be read: Take is muted. Leave one strip unmuted"),
         (unused_strip, "cannot be read: Take would play if the nonlinear animation were not"),
         (edit_mode, "Leave edit mode first"),

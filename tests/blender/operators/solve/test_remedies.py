@@ -29,6 +29,21 @@ def test_a_wrong_frame_rate_is_told_and_mended(jump: bpy.types.Object) -> None:
     assert active_stance(jump.hangtime).name == "ground 2"  # the landing is chosen
 
 
+def test_a_strip_that_plays_the_jump_too_slowly_is_named_with_the_scale_that_fits(
+    jump: bpy.types.Object,
+) -> None:
+    data, settings = jump.animation_data, jump.hangtime
+    strip = data.nla_tracks.new().strips.new("Jump", 1, data.action)
+    data.action, strip.scale = None, 2.0
+    start = strip.frame_start
+    settings.first_frame = round(start + 2.0 * (settings.first_frame - start))
+    settings.last_frame = round(start + 2.0 * (settings.last_frame - start))
+    with pytest.raises(RuntimeError, match="“Jump” plays its action at Scale 2; set the strip's"):
+        bpy.ops.hangtime.analyze()
+    strip.scale, settings.use_range = 1.0, False
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+
+
 def test_stances_are_called_by_their_roles(analysed: bpy.types.Object) -> None:
     settings = analysed.hangtime
     assert roles(settings) == {"ground 1": "Take-Off", "ground 2": "Landing"}

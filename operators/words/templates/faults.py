@@ -1,30 +1,10 @@
-"""What is said of every fault, solver status and violation: templates, to be translated.
+"""What is said of every fault but a rig's."""
 
-A template names attributes of its fault in braces; formats with names are those of `_Formatter` in
-messages.py.
-"""
-
-from ...solver.data import faults
-from ...solver.data.faults import Fault
-from ...solver.data.row_kinds import RowKind
-from ...solver.data.status import Status
-
-OUTCOMES = {
-    Status.SOLVED: "Solved: the motion obeys physics and everything asked for holds.",
-    Status.STALLED: "No motion was found that obeys physics and holds all that is asked for. "
-    "Ask for less of what is named here, move pins less, or check the contacts' frames.",
-    Status.TOO_MANY_STEPS: "No motion was found within the allowed number of steps. "
-    "Ask for less of what is named here, move pins less, or check the contacts' frames.",
-    Status.MISSED: "The motion obeys physics, but between the solver's instants something asked "
-    "for is missed by more than is promised. Loosen what is named here a little.",
-    Status.NO_BODY: "The motion obeys physics and what was asked for holds, but no body can do it: "
-    "it goes through itself, the floor or an obstacle, or joints far beyond their range. Ask for "
-    "less of what was asked, or elsewhere.",
-    Status.STOPPED: "Stopped before everything was met; the motion is as the solver left it.",
-}
+from ....solver.data import faults
+from ....solver.data.faults import Fault
 
 # Of several, `_variant` says which.
-TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
+FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     faults.NoArmature: (
         "No armature is chosen; select the armature that carries the recording.",
         "“{object_name}” is or holds no armature; choose one with a recording.",
@@ -71,19 +51,6 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "air.",
     faults.NoRootBone: "“{armature}” has no bone above the pelvis “{pelvis}” that could carry root "
     "motion; choose In Place or Hips, or parent the pelvis to a root bone.",
-    faults.NoControls: "The bones {bones:names} follow constraints, and no bone that you can pose "
-    "turns them by itself, so a result could not be written; bake them and mute the constraints, "
-    "or choose other bones under Bones.",
-    faults.PulledFromOutside: "The bones {bones:names} are pulled towards {targets:names} by "
-    "constraints ({constraints:names}), and no bone of the armature moves that, so a result could "
-    "not be written; bake the action with Visual Keying (Object > Animation > Bake Action), then "
-    "mute the constraints.",
-    faults.DrivenBones: "Drivers pose the bones {bones:names} whatever keys they have, so a result "
-    "could not be written; bake the action and delete these drivers, or choose other bones under "
-    "Bones.",
-    faults.HeldBones: "Constraints pose the bones {bones:names} otherwise than their keys say "
-    "(frame {frame:g}), so a result could not be written; bake the action and mute these "
-    "constraints.",
     faults.AimedBone: "“{request}” is about the bone “{bone}”, which the result leaves to the "
     "constraints or drivers that aim neck or head; mute these, or bake the action and delete them, "
     "then press Analyze again; or switch “{request}” off.",
@@ -209,6 +176,11 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
         "none does under load, so something unseen carries it meanwhile; correct their contacts, "
         "choose frames without it, or let what they ride on be ground in the panel World.",
     ),
+    faults.ScaledStrip: "The body falls as gravity has it at {rate} frames a second, but the scene "
+    "has {scene_rate:.4g} (frames {first:g} to {last:g}), and the NLA strip “{strip}” plays its "
+    "action at Scale {scale:.4g}; set the strip's Scale to {fitting_scale:.4g} (Nonlinear Animation "
+    "editor, sidebar, Action Clip), or, where it is meant to be so, the scene's frame rate to "
+    "{rate}.",
     faults.UnseenSupports: "In frames {spans:spans} neither foot touches the ground, yet the body "
     "does not fall, so something unseen carries it (a box, a rail, a hand); choose frames without "
     "it, or let what carries it be ground in the panel World. If nothing does, give the scene the "
@@ -386,31 +358,5 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.ObjectGone: "“{thing}” is not in the scene any more; remove it from the list in the "
     "panel World, or switch it off.",
 }
-DAMAGED = (
-    "The recording is damaged, which may be why; Examine, or the command doctor, tells more: {}"
-)
-MORE_DAMAGES = " And {} more."
 
 PLACES = ("Recipe {path}", "Recipe {path}, line {line}")
-
-ANGLE_MISSED = "“{name}” is missed by {amount:.3g}°"
-AWAY = "“{name}” stays {amount:millimetres} from its place"
-AT_ITS_END = "{name} as far as its range goes"
-MISSED = {  # of a constraint, by its type
-    RowKind.BALANCE: "in {name}, {amount:.3g} body weights are not carried as they must be",
-    RowKind.MOMENT: "in {name}, the body would have to push off thin air ({amount:.3g} BW·m)",
-    RowKind.PIN: AWAY,
-    RowKind.PIN_SPEED: "“{name}” still slides at {amount:.3g} m/s",
-    RowKind.POINT: AWAY,
-    RowKind.BEND: ANGLE_MISSED,
-    RowKind.CONE: ANGLE_MISSED,
-    RowKind.TWIST: ANGLE_MISSED,
-    RowKind.ORIENTATION: ANGLE_MISSED,
-    RowKind.POSE: ANGLE_MISSED,
-    RowKind.PUSH: "“{name}” would have to pull with {amount:.3g} body weights",
-    RowKind.FRICTION: "“{name}” slips: {amount:.3g} body weights beyond its friction",
-    RowKind.PEAK: "“{name}” is exceeded by {amount:.3g} body weights",
-    RowKind.SOLID: "{name} stays in by {amount:millimetres}",
-    RowKind.RANGE: "{name} {amount:.3g}° beyond its range",
-    RowKind.TORQUE: "“{name}” needs {amount:.3g} N·m more than its limit",
-}
