@@ -14,6 +14,9 @@ from ..accessors import armature_data, current_scene, pose_of
 from ..action_slots import all_curves
 
 
+COPIES = ("COPY_TRANSFORMS", "COPY_ROTATION")  # constraints that let a bone follow another
+
+
 @dataclass(frozen=True)
 class Poses:
     """Bones, parents first, at T instants.
@@ -43,6 +46,15 @@ def set_frame_rate(scene: bpy.types.Scene, rate: float) -> None:
     """Has a scene play so many frames a second, by the nearest whole number and a base near 1."""
     scene.render.fps = max(1, round(rate))
     scene.render.fps_base = scene.render.fps / rate
+
+
+def followed_bone(armature: bpy.types.Object, name: str) -> str:
+    """The bone of the same armature whose turns the first of a bone's constraints copies; "" for
+    none."""
+    for each in pose_of(armature).bones[name].constraints:
+        if each.type in COPIES and not each.mute and getattr(each, "target", None) == armature:
+            return str(getattr(each, "subtarget", ""))
+    return ""
 
 
 def sample(armature: bpy.types.Object, frames: FloatArray) -> Poses:

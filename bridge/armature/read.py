@@ -14,7 +14,7 @@ from ..properties.of_actions.known_contacts import known_contacts
 from . import fcurves
 from .channels import proper
 from .played import require_unblended, require_unstarred, strip_time, why_no_action
-from .poses import Poses, frames_per_second, metres_per_unit, sample
+from .poses import Poses, followed_bone, frames_per_second, metres_per_unit, sample
 
 _SAME_SCALE = 1e-4  # relative; float32 and chains of parents leave about 1e-6
 _EPSILON = 1e-4  # frames
@@ -116,7 +116,8 @@ def rest_bones(armature: bpy.types.Object, poses: Poses) -> tuple[Bone, ...]:
     def bone(name: str, parent: int) -> Bone:
         rest = armature_data(armature).bones[name]
         rotation = proper(world[:3, :3] @ np.array(rest.matrix_local, float)[:3, :3])
-        return Bone(name, parent, place(rest.head_local), place(rest.tail_local), rotation)
+        head, tail = place(rest.head_local), place(rest.tail_local)
+        return Bone(name, parent, head, tail, rotation, followed_bone(armature, name))
 
     return tuple(map(bone, poses.bones, poses.parents))
 

@@ -12,6 +12,7 @@ from ...solver.skeleton.mapping import Evidence, guess_bones, labels_of
 from ...solver.skeleton.parts import LABELS, REQUIRED_KEYS
 from ...solver.skeleton.tree import tree_of
 from ..accessors import armature_data
+from ..armature.poses import followed_bone
 from ..properties.settings import HangtimePart, HangtimeSettings, settings_of
 
 
@@ -76,6 +77,7 @@ def named_bones(armature: bpy.types.Object) -> list[Bone]:
             np.array(bone.head_local, float),
             np.array(bone.tail_local, float),
             np.array(bone.matrix_local.to_3x3(), float),
+            followed_bone(armature, bone.name),
         )
         for bone in bones
     ]

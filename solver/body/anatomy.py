@@ -28,8 +28,9 @@ def map_anatomy(
     segments = [Segment(part, side, bone) for (part, side), bone in found.items()]
     segments += [Segment(Part.SPINE, Side.MIDDLE, bone) for bone in spine]
     segments += [Segment(Part.NECK, Side.MIDDLE, bone) for bone in neck]
-    # Bones come parents first, but a family's parents are not always those of the armature.
-    return tuple(sorted(segments, key=lambda s: (tree.family and tree.depth(s.bone), s.bone)))
+    # Bones come parents first, but a tree's parents are not always those of the armature.
+    by_depth = not tree.in_order
+    return tuple(sorted(segments, key=lambda s: (by_depth and tree.depth(s.bone), s.bone)))
 
 
 def guess_anatomy(bones: Sequence[Bone]) -> dict[str, str | None]:

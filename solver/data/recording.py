@@ -19,6 +19,7 @@ class Bone:
 
     parent: index of the parent in `Recording.bones`, -1 for a root; parents come first.
     head, tail: (3,) rest positions, world, m. rotation: (3, 3) rest orientation, bone to world.
+    follows: the bone of the same skeleton whose turns a constraint copies; "" for none.
     """
 
     name: str
@@ -26,6 +27,7 @@ class Bone:
     head: FloatArray
     tail: FloatArray
     rotation: FloatArray
+    follows: str = ""
 
 
 @dataclass(frozen=True, eq=False)

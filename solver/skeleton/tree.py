@@ -1,6 +1,7 @@
 """The skeleton as a tree, within one family of bones where a rig has several."""
 
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -64,17 +65,18 @@ class Tree:
                 reach[above] = max(reach[above], step + reach[bone])
         return reach
 
+    @property
+    def in_order(self) -> bool:
+        """Whether parents come first, as in the armature."""
+        return not self.family and all(above < bone for bone, above in enumerate(self.parents))
+
     def name(self, bone: int) -> str:
         """A bone's name without its family's prefix."""
         return bare(self.bones[bone].name) if self.prefixes else self.bones[bone].name
 
     def ancestors(self, bone: int) -> list[int]:
         """The bone and its ancestors, nearest first."""
-        line = []
-        while bone >= 0:
-            line.append(bone)
-            bone = self.parents[bone]
-        return line
+        return _line(self.parents, bone)
 
     def depth(self, bone: int) -> int:
         """Number of ancestors."""
@@ -107,7 +109,9 @@ def tree_of(bones: Sequence[Bone]) -> Tree:
     Of Auto-Rig Pro's rig its inner bones. Of a generated rig:
     Deform bones, but for a limb that has several in a row, which share out its twist: of these the
     one that they follow. A bone whose parent is of another family hangs on the bone that stands for
-    this parent in its own: Rigify's ORG-thigh.L, below ORG-spine, on DEF-spine.
+    this parent in its own: Rigify's ORG-thigh.L, below ORG-spine, on DEF-spine. A bone of none,
+    such as a control that was chosen, keeps its parent where nothing above it is of the family.
+    Bones that lie flat, each following another, hang together as those do.
     """
     names = [bone.name for bone in bones]
     inner = inner_parents(names)
@@ -117,16 +121,20 @@ def tree_of(bones: Sequence[Bone]) -> Tree:
     for prefix in FAMILIES:
         family = {bare(n): i for i, n in enumerate(names) if n.startswith(prefix)}
         index = {**family, **index}
+    real = [bone.parent for bone in bones]
     if len(index) < FEWEST:
-        return Tree(tuple(bones), tuple(bone.parent for bone in bones), tuple(range(len(bones))))
+        everything = range(len(bones))
+        return Tree(tuple(bones), tuple(_led(bones, real, everything)), tuple(everything))
     followed = {bare(n): i for i, n in enumerate(names) if n.startswith(FAMILIES[1])}
     for name in tuple(index):
         whole = SEGMENT.sub("", name)
         if followed and name not in followed and whole in followed:
             index[whole] = followed[whole]
             del index[name]
+    inside = sorted(index.values())
     parents = [_above(bones, i, index) for i in range(len(bones))]
-    return Tree(tuple(bones), tuple(parents), tuple(sorted(index.values())), FAMILIES)
+    parents = [real[i] if p < 0 and i not in inside else p for i, p in enumerate(parents)]
+    return Tree(tuple(bones), tuple(_led(bones, parents, inside)), tuple(inside), FAMILIES)
 
 
 def _tree_within(bones: Sequence[Bone], inner: Mapping[str, str | None]) -> Tree:
@@ -150,3 +158,34 @@ def _above(bones: Sequence[Bone], bone: int, index: dict[str, int]) -> int:
             return index[name]
         above = bones[above].parent
     return -1
+
+
+def _led(bones: Sequence[Bone], parents: Sequence[int], inside: Sequence[int]) -> list[int]:
+    """The parents, but of bones that lie flat those of the bones that they follow.
+
+    Flat are those on one root, or that are all roots themselves, if they are as many as a family.
+    A flat bone hangs on the one that follows the nearest control above its own, or on this control
+    where that may be part of the body.
+    """
+    names = {bone.name: i for i, bone in enumerate(bones)}
+    leaders = {i: names[bones[i].follows] for i in inside if bones[i].follows in names}
+    roots = {-1, *(i for i, above in enumerate(parents) if above < 0)}
+    beneath = Counter(parents[i] for i in leaders if parents[i] in roots)
+    flat = [i for i in leaders if beneath[parents[i]] >= FEWEST]
+    followers = {leaders[i]: i for i in reversed(flat)}
+    found = list(parents)
+    for bone in flat:
+        line = _line([each.parent for each in bones], leaders[bone])[1:]
+        hooks = (followers.get(control, control) for control in line)
+        may = (i for i in hooks if i in inside and bone not in _line(found, i))
+        found[bone] = next(may, found[bone])
+    return found
+
+
+def _line(parents: Sequence[int], bone: int) -> list[int]:
+    """A bone and its ancestors, nearest first."""
+    line = []
+    while bone >= 0:
+        line.append(bone)
+        bone = parents[bone]
+    return line
