@@ -13,7 +13,6 @@ from ...solver.arrays import FloatArray
 from ..accessors import armature_data, current_scene, pose_of
 from ..action_slots import all_curves
 
-
 COPIES = ("COPY_TRANSFORMS", "COPY_ROTATION")  # constraints that let a bone follow another
 
 

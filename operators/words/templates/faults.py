@@ -178,9 +178,9 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     ),
     faults.ScaledStrip: "The body falls as gravity has it at {rate} frames a second, but the scene "
     "has {scene_rate:.4g} (frames {first:g} to {last:g}), and the NLA strip “{strip}” plays its "
-    "action at Scale {scale:.4g}; set the strip's Scale to {fitting_scale:.4g} (Nonlinear Animation "
-    "editor, sidebar, Action Clip), or, where it is meant to be so, the scene's frame rate to "
-    "{rate}.",
+    "action at Scale {scale:.4g}; set the strip's Scale to {fitting_scale:.4g} (Nonlinear "
+    "Animation editor, sidebar, Action Clip), or, where it is meant to be so, the scene's frame "
+    "rate to {rate}.",
     faults.UnseenSupports: "In frames {spans:spans} neither foot touches the ground, yet the body "
     "does not fall, so something unseen carries it (a box, a rail, a hand); choose frames without "
     "it, or let what carries it be ground in the panel World. If nothing does, give the scene the "

@@ -10,8 +10,9 @@ RIGS: dict[type[Fault], str | tuple[str, ...]] = {
     "{others:names}; bake it (Pose > Animation > Bake Action, with Visual Keying and Clear "
     "Constraints).",
     faults.NoControls: "The bones {bones:few} follow constraints, and no bone that you can pose "
-    "turns them by itself, so a result could not be written; bake them (pose mode, Pose > Animation "
-    "> Bake Action, Visual Keying) and mute the constraints, or choose other bones under Bones.",
+    "turns them by itself, so a result could not be written; bake them (pose mode, Pose > "
+    "Animation > Bake Action, Visual Keying) and mute the constraints, or choose other bones "
+    "under Bones.",
     faults.PulledFromOutside: "The bones {bones:few} are pulled towards {targets:names} by "
     "constraints ({constraints:names}), and no bone of the armature moves that, so a result could "
     "not be written; bake the action with Visual Keying (Object > Animation > Bake Action), then "

@@ -37,6 +37,7 @@ from .recordings import OddScale as OddScale
 from .recordings import OptionNotTaken as OptionNotTaken
 from .recordings import OutsideKeys as OutsideKeys
 from .recordings import RateChanged as RateChanged
+from .recordings import ScaledStrip as ScaledStrip
 from .recordings import SpanChanged as SpanChanged
 from .recordings import TextCure as TextCure
 from .recordings import Treadmill as Treadmill
@@ -46,7 +47,6 @@ from .recordings import UnreadableClip as UnreadableClip
 from .recordings import UnreadableRepairs as UnreadableRepairs
 from .recordings import UnreadableText as UnreadableText
 from .recordings import UnreadStrips as UnreadStrips
-from .recordings import ScaledStrip as ScaledStrip
 from .recordings import UnseenSupport as UnseenSupport
 from .recordings import UnseenSupports as UnseenSupports
 from .recordings import ZeroLengthBone as ZeroLengthBone
