@@ -31,6 +31,10 @@ SIDE_WORDS: Mapping[Side, tuple[str, ...]] = {
     Side.LEFT: ("left", "link", "gauche", "izq", "esq", "sinistr", "左", "왼", "лев"),
     Side.RIGHT: ("right", "recht", "droit", "derech", "direit", "destr", "右", "오른", "прав"),
 }
+HEAD_WORDS = (
+    *("head", "kopf", "tete", "tête", "cabeza", "cabeça", "testa"),
+    *("atama", "頭", "头", "머리", "голов"),
+)
 
 
 @lru_cache(maxsize=10_000)
@@ -60,12 +64,24 @@ def plain(word: str) -> str:
     return re.sub(r"[ _.\-]", "", word).lower()
 
 
+def names_head(name: str) -> bool:
+    """Whether a name calls a bone the head in any of the languages: by one word alone, for there
+    are hats and hair of the head, too."""
+    words = _words(name)
+    return len(words) == 1 and words[0].startswith(HEAD_WORDS)
+
+
+def _words(name: str) -> list[str]:
+    """The words of a name, lower case: 'Hals_Kopf2' -> ['hals', 'kopf']."""
+    return [word.lower() for word in re.findall(r"[A-Z]?[^\W\d_A-Z]+|[A-Z]+", name)]
+
+
 def side_of(name: str) -> Side:
     """The side that a name tells in any of the languages; MIDDLE where it tells none."""
     side, _ = split_side(name)
     if side is not Side.MIDDLE:
         return side
-    words = [word.lower() for word in re.findall(r"[A-Z]?[^\W\d_A-Z]+|[A-Z]+", name)]
+    words = _words(name)
     told = {s for s in SIDES if any(word.startswith(SIDE_WORDS[s]) for word in words)}
     return told.pop() if len(told) == 1 else Side.MIDDLE
 

@@ -1,7 +1,7 @@
 """Parts of the body from the skeleton's shape alone: whatever its bones are called.
 
 Lengths as shares of a stature by Drillis and Contini (1966): thigh .245, shank .246, upper arm
-.186, forearm .146, hip's height .53, ear's about .93; foot .152 long and .039 high, of which the
+.186, forearm .146; foot .152 long and .039 high, of which the
 ball is at some .72, the ankle at .25. Rest poses of all kinds are taken: T, A, and bent.
 """
 
@@ -11,6 +11,7 @@ from itertools import combinations
 import numpy as np
 
 from ..arrays import FloatArray
+from .head import Trunk, find_head
 from .limb_pairs import LimbPair, find_limbs, without_props
 from .names import side_of
 from .parts import LEG, SIDES, Found, Part, Side
@@ -19,7 +20,6 @@ from .tree import Tree
 SHANK_OVER_THIGH = 0.246 / 0.245
 FOREARM_OVER_UPPER_ARM = 0.146 / 0.186
 BALL = np.hypot(0.152 * (0.72 - 0.25), 0.039) / 0.491  # ankle to ball, over hip to ankle
-EAR = (0.93 - 0.53) / 0.491  # hip to ear, over hip to ankle: the head's joint is no higher
 APART = 1.15  # shoulders over hips, at least; what is nearer to its twin is a clavicle
 SEEN = 0.02  # of the trunk's length: knees or toes that lead ahead by less do not tell where it is
 NEAR = 1e-3  # of a limb's length: bones nearer to each other have one joint
@@ -40,13 +40,13 @@ def _by_limbs(tree: Tree) -> Found:
     limbs = find_limbs(tree)
     if limbs is None:
         return {}
-    legs = [_leg(tree, first) for first in limbs.legs.first]
+    legs = [_leg(tree, line) for line in _twin_lines(tree, limbs.legs)]
     if not all(legs):
         return {}
     hips = _gap(tree, [leg[Part.THIGH] for leg in legs])
     arms = [_arm(tree, limbs.arms, k, hips) for k in range(2)]
-    head = _head(tree, limbs.arms, legs)
-    if not all(arms) or head is None:
+    head = _head(tree, limbs.arms, legs, arms) if all(arms) else None
+    if head is None:
         return {}
     left = _left(tree, legs, head)
     found: Found = {(Part.HEAD, Side.MIDDLE): head}
@@ -56,9 +56,9 @@ def _by_limbs(tree: Tree) -> Found:
     return found
 
 
-def _leg(tree: Tree, first: int) -> dict[Part, int]:
-    """Thigh, shank, foot and toe of one leg; empty where it has no three joints."""
-    line = _distinct(tree, tree.main_line(first))
+def _leg(tree: Tree, line: Sequence[int]) -> dict[Part, int]:
+    """Thigh, shank, foot and toe in the line of one leg; empty where it has no three joints."""
+    line = _distinct(tree, line)
     split = _best_split(tree, line, SHANK_OVER_THIGH)
     if split is None:
         return {}
@@ -71,6 +71,18 @@ def _leg(tree: Tree, first: int) -> dict[Part, int]:
         from_ankle = np.linalg.norm(tree.heads[beyond] - points[ankle], axis=1)
         leg[Part.TOE] = beyond[int(np.argmin(np.abs(from_ankle - wanted)))]
     return leg
+
+
+def _twin_lines(tree: Tree, pair: LimbPair) -> list[list[int]]:
+    """The lines of both limbs, without what one alone has on the head of its last bone, such as a
+    claw on a toe."""
+    lines = [tree.main_line(first) for first in pair.first]
+    shared = min(map(len, lines))
+    for line in lines:
+        near = NEAR * _length(tree.heads[line])
+        while len(line) > shared and _gap(tree, line[-2:]) <= near:
+            line.pop()
+    return lines
 
 
 def _arm(tree: Tree, arms: LimbPair, k: int, hips: float) -> dict[Part, int]:
@@ -131,31 +143,14 @@ def _fans(tree: Tree, bone: int) -> bool:
     return any(_cosine(a, b) < np.cos(np.radians(5.0)) for a, b in combinations(lines, 2))
 
 
-def _head(tree: Tree, arms: LimbPair, legs: Sequence[dict[Part, int]]) -> int | None:
-    """The head: where the line up from the arms' hub branches, or its last bone but a tip.
-
-    A tip is what lies above the ears, where no head turns.
-    """
-    middle = [bone for bone in tree.children[arms.hub] if bone not in arms.first]
-    if not middle:
-        return None
-    hub = tree.heads[arms.hub]
-    reach = [float(np.linalg.norm(tree.heads[b] - hub) + tree.reach[b]) for b in middle]
-    line = _upwards(tree, arms.hub, tree.main_line(middle[int(np.argmax(reach))]))
-    for bone in line:
-        if len(tree.children[bone]) > 1:
-            return bone
+def _head(
+    tree: Tree, limbs: LimbPair, legs: Sequence[dict[Part, int]], arms: Sequence[dict[Part, int]]
+) -> int | None:
+    """The head, above the middle between hips and shoulders."""
     hips = np.mean([tree.heads[leg[Part.THIGH]] for leg in legs], axis=0)
+    shoulders = np.mean([tree.heads[arm[Part.UPPER_ARM]] for arm in arms], axis=0)
     length = np.mean([_length(tree.heads[[leg[p] for p in LEG[:3]]]) for leg in legs])
-    high = float(np.linalg.norm(tree.heads[line[-1]] - hips))
-    return line[-2] if len(line) > 1 and high > EAR * length else line[-1]
-
-
-def _upwards(tree: Tree, hub: int, line: Sequence[int]) -> Sequence[int]:
-    """A line of bones as far as it goes away from the arms' hub: hair hangs down again."""
-    away = np.linalg.norm(tree.heads[list(line)] - tree.heads[hub], axis=1)
-    back = np.flatnonzero(np.diff(away) < 0.0)
-    return line[: back[0] + 1] if len(back) else line
+    return find_head(Trunk(tree, limbs.hub, limbs.first, hips, shoulders, float(length)))
 
 
 def _ordered(

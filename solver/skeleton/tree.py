@@ -15,6 +15,8 @@ from .inner_bones import inner_parents
 FAMILIES = ("DEF-", "ORG-")  # Rigify's deform bones, and the bones that these follow
 SEGMENT = re.compile(r"\.\d+$")
 FEWEST = 10  # bones that make a family
+COPY = re.compile(r"\.\d{3}$")  # what Blender puts behind the names of a copy's bones
+COPIED = 0.8  # share of the bones that have the same behind them in a copy
 
 
 @dataclass(frozen=True)
@@ -70,9 +72,19 @@ class Tree:
         """Whether parents come first, as in the armature."""
         return not self.family and all(above < bone for bone, above in enumerate(self.parents))
 
+    @cached_property
+    def suffix(self) -> str:
+        """What stands behind all names in a copy of a rig, but for the few that it makes others;
+        "" where nothing does."""
+        ends = (COPY.search(self.bones[bone].name) for bone in self.inside)
+        counts = Counter(end[0] for end in ends if end is not None)
+        suffix, count = max(counts.items(), key=lambda item: item[1], default=("", 0))
+        return suffix if count >= COPIED * len(self.inside) else ""
+
     def name(self, bone: int) -> str:
-        """A bone's name without its family's prefix."""
-        return bare(self.bones[bone].name) if self.prefixes else self.bones[bone].name
+        """A bone's name without its family's prefix, and without what a copy has behind it."""
+        name = self.bones[bone].name.removesuffix(self.suffix)
+        return bare(name) if self.prefixes else name
 
     def ancestors(self, bone: int) -> list[int]:
         """The bone and its ancestors, nearest first."""

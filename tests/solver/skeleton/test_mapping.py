@@ -64,6 +64,16 @@ def test_unreal_5_is_told_by_its_spine_and_neck_without_a_metahumans_face() -> N
     assert guess_bones(tree_of(bones)).convention == "Unreal 5 (Manny, MetaHuman)"
 
 
+@pytest.mark.parametrize("key", ["rigify", "mixamo"])
+def test_a_copy_whose_names_end_alike_is_of_its_convention(key: str) -> None:
+    """Blender gives another number to names that end in one, as Rigify's spine."""
+    numbers = {"spine": "spine.007"}
+    names = {b.name: numbers.get(b.name, f"{b.name}.001") for b in rest_bones(RIGS[key], actor())}
+    bones = [replace(b, name=names[b.name]) for b in rest_bones(RIGS[key], actor())]
+    assert found(bones) == {label: names[bone] for label, bone in right(RIGS[key]).items()}
+    assert guess_bones(tree_of(bones)).convention == RIGS[key].name
+
+
 def test_there_is_a_rig_of_every_convention_asked_for() -> None:
     tables = {convention.name for convention in conventions()}
     assert {RIGS[key].name for key in KNOWN} <= tables
