@@ -12,6 +12,9 @@ UNEQUAL = 0.2  # sum of the relative differences up to which two subtrees mirror
 ODD = 0.1  # what a joint more on one side adds to that
 SHORTEST = 0.4  # of the longest pair: what reaches less far is no limb, but fingers, eyes, a skirt
 SAME = 0.1  # of a limb's reach: joints of twins are as far from each other to within that
+# Clavicle to wrist over hip to ball, of shares of a stature by Drillis and Contini (1966), and
+# .1 for a clavicle; fingers and tips of toes reach about as much farther.
+ARM_OVER_LEG = (0.1 + 0.186 + 0.146) / (0.491 + 0.08)
 FEWEST_JOINTS = 3  # of an arm without clavicle or of a leg without toes
 
 
@@ -36,7 +39,7 @@ def find_limbs(tree: Tree) -> Limbs | None:
     """Legs and arms; None where the skeleton has not two such pairs on different bones.
 
     Legs hang nearer to the root than arms. Of several pairs on one bone, legs reach farthest, and
-    arms branch most, as hands do and wings do not.
+    arms branch most, as hands do and wings do not, or else are nearest to an arm's length.
     """
     pairs = list(_outermost(tree))
     longest = max((_reach(tree, pair) for pair in pairs), default=0.0)
@@ -47,7 +50,16 @@ def find_limbs(tree: Tree) -> Limbs | None:
     others = [p for p in pairs if p.hub != legs.hub]
     if not others:
         return None
-    arms = min(others, key=lambda p: (_depth(tree, p), -_size(tree, p.first[0]), -_reach(tree, p)))
+    length = ARM_OVER_LEG * _reach(tree, legs)
+
+    def unlike_arms(pair: LimbPair) -> tuple[int, int, float]:
+        return (
+            _depth(tree, pair),
+            -_size(tree, pair.first[0]),
+            abs(float(np.log(_reach(tree, pair) / length))),
+        )
+
+    arms = min(others, key=unlike_arms)
     return Limbs(legs, arms)
 
 

@@ -62,7 +62,7 @@ def found(bones: Sequence[Bone]) -> list[str | None]:
 
 
 @pytest.mark.parametrize("extra", EXTRAS)
-@pytest.mark.parametrize("key", ["gibberish", "german"])
+@pytest.mark.parametrize("key", ["gibberish", "german", "japanese"])
 def test_what_hangs_on_a_body_of_unknown_names_is_no_part_of_it(key: str, extra: str) -> None:
     assert found(dressed(key, EXTRAS[extra])) == found(dressed(key, ()))
 
