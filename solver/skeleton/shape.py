@@ -1,8 +1,8 @@
 """Parts of the body from the skeleton's shape alone: whatever its bones are called.
 
 Lengths as shares of a stature by Drillis and Contini (1966): thigh .245, shank .246, upper arm
-.186, forearm .146; foot .152 long and .039 high, of which the
-ball is at some .72, the ankle at .25. Rest poses of all kinds are taken: T, A, and bent.
+.186, forearm .146; foot .152 long and .039 high, of which the ball is at some .72, the ankle at
+.25. Rest poses of all kinds are taken: T, A, and bent.
 """
 
 from collections.abc import Sequence
