@@ -157,6 +157,7 @@ def _write(
             showing=showing,
         )
         forget_copied(cut)
+        _state_range(cut, motion, alone=True)
         note_take(armature, cut, recorded)
         return cut, None
     action = scene_copy(armature, recorded, name)
@@ -168,12 +169,26 @@ def _write(
             for curve in all_curves(action):
                 fcurves.crop(curve, float(motion.track.frames[0]), float(motion.track.frames[-1]))
             written = replace(written, blends=())  # which are left out
+        _state_range(action, motion, alone=cut_off)
         whole = True
     finally:
         if not whole:  # cancelled in between: half an action is of no use to anybody
             bpy.data.actions.remove(action)
     guard(recorded)
     return action, written
+
+
+def _state_range(action: bpy.types.Action, motion: AdaptedMotion, *, alone: bool) -> None:
+    """Has a copy's manual frame range, which exports go by, hold the adapted frames; alone: these
+    only. A cycle whose ends are among them is none any more."""
+    if not action.use_frame_range:
+        return
+    first, last = motion.track.frames[[0, -1]].tolist()
+    ends = action.frame_start, action.frame_end
+    if alone or first <= ends[0] or last >= ends[1]:
+        action.use_cyclic = False
+    start, end = (first, last) if alone else (min(ends[0], first), max(ends[1], last))
+    action.frame_start, action.frame_end = start, end
 
 
 def forget_copied(action: bpy.types.Action) -> None:

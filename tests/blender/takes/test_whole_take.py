@@ -456,6 +456,28 @@ def test_cut_leaves_the_adapted_frames_alone() -> None:
     assert action.frame_range.to_tuple() == (FIRST, LAST)
 
 
+@pytest.mark.parametrize(
+    ("ends", "after", "cyclic", "now"),
+    [
+        ((1.0, LENGTH), After.CARRY, True, (1.0, LENGTH)),
+        ((FIRST, LAST - 5.0), After.CARRY, False, (FIRST, LAST)),
+        ((1.0, LENGTH), After.CUT, False, (FIRST, LAST)),
+    ],
+)
+def test_a_manual_frame_range_holds_the_adapted_frames(
+    ends: tuple[float, float], after: After, cyclic: bool, now: tuple[float, float]
+) -> None:
+    """Exports go by it: half of two adapted cycles was left out, as a loop."""
+    armature = take()
+    recorded = armature.animation_data.action
+    asked = motion(read_recording(armature), after=after)
+    recorded.use_frame_range = recorded.use_cyclic = True
+    recorded.frame_start, recorded.frame_end = ends
+    action, _ = write_result(armature, asked, name="Result")
+    assert action.use_cyclic == cyclic
+    assert (action.frame_start, action.frame_end) == now
+
+
 def sized() -> bpy.types.Object:
     """A take whose thigh changes its size from frame to frame."""
     armature = take()
