@@ -203,7 +203,9 @@ class Outputs:
         from ...bridge.takes.span import WrittenTake
 
         made = self.result.report(self.clip.origin, self.stages.done)
-        return replace(made, blends=written.blends if isinstance(written, WrittenTake) else ())
+        if not isinstance(written, WrittenTake):
+            return made
+        return replace(made, blends=written.blends, slide_on_way_back_m=written.slide)
 
     def _missed(self, made: _Written) -> tuple[MissedContact, ...]:
         """Contacts that the keys which the performer shows have elsewhere than solved; none of a
@@ -232,6 +234,7 @@ class Outputs:
         from ...bridge.armature.write import side_by_side, write_action
         from ...bridge.files.reproportioned import build_reproportioned, in_new_axes
         from ...bridge.loops.write_loop import Loop, write_loop
+        from ...bridge.takes.take_time import TakeTime
         from ...bridge.takes.write_result import write_result
 
         recorded = present(current_action(self.clip.armature))
@@ -248,13 +251,27 @@ class Outputs:
             loop = Loop.of(armature, track, self.loop.root)
             slot = slot_identifier(armature)
             adapted, written = complete(write_loop(armature, loop, recorded, slot, name=name))
+            self._keep_contacts(recorded, adapted, 0)
             side_by_side(armature, recorded, adapted, offset=self._beside())
         else:
-            adapted, written = write_result(armature, self._motion(), name=name)
+            motion = self._motion()
+            adapted, take = write_result(armature, motion, name=name)
+            written, time = take, TakeTime.of(motion.times, 1.0) if take is None else take.time
+            self._keep_contacts(recorded, adapted, time.later)
             side_by_side(armature, recorded, adapted, offset=self._beside())
         first, last = adapted.frame_range.to_tuple()
         _show_frames(round(first), round(last), alone=not self.clip.in_scene)
         return _Written(armature, adapted, schedule, written)
+
+    def _keep_contacts(
+        self, recorded: bpy.types.Action, adapted: bpy.types.Action, later: int
+    ) -> None:
+        """Keep with a result the contacts that it was solved with. later: as of `store_known`."""
+        from ...bridge.properties.of_actions.known_contacts import known_in, store_known
+
+        moving = {thing.name for thing in self.result.subject.problem.scene if thing.moves}
+        first, rate = float(self.result.track.frames[0]), self.result.recording.rate
+        store_known(adapted, known_in(self.result.schedule, first, rate, moving), recorded, later)
 
     def _mark_contacts(self, performer: bpy.types.Object, adapted: bpy.types.Action) -> None:
         """By markers and channels, as is asked for."""

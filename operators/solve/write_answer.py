@@ -55,7 +55,7 @@ from ...solver.data.faults import ChangedMeanwhile, Fault, RateChanged
 from ...solver.data.recording import PoseTrack, Recording, same_motion
 from ...solver.data.solver_options import Method
 from ...solver.worker.protocol import Adapted
-from ..words.headline import blend_lines, missed_line
+from ..words.headline import blend_lines, missed_line, slide_lines
 from ..words.report_text import as_text
 from ..words.summary_text import summary
 from ..words.take_text import (
@@ -149,7 +149,8 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     if options.written_as is WrittenAs.SLOT and options.markers is ContactMarkers.ACTION:
         told = [*told, MARKERS_LEFT_OUT]
     _note(armature, armature, action, answer, told)
-    _warn(armature, action, [] if written is None else blend_lines(written.blends))
+    if written is not None:
+        _warn(armature, action, [*blend_lines(written.blends), *slide_lines(written.slide)])
     times = answer.report.times
     time = written.time if written is not None else TakeTime.of(times, 1.0)
     span = written.span if written is not None else None

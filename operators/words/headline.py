@@ -21,6 +21,7 @@ AS_RECORDED = {
     "that is asked for was reached",
 }
 FAR_OFF = 0.05  # m, beside the take; a blend of less is hardly seen
+SLIDES = 0.01  # m, of feet on the way back, that shows
 LURCH = 0.5  # m/s, by which a blend's hips are faster than the take's; of less, likewise
 LEAST_TURNED = 1.0  # degrees, of a loop's way; a recorded one weaves by about as much
 FITS = (CertificateItem.FIT_RMS, CertificateItem.FIT_WORST_FRAME)
@@ -66,6 +67,7 @@ def headline(report: Report) -> list[str]:
     accepted = accepted_lines(report.needs)
     told = [nearness(report.fit_to_recording), *accepted, *lifted_lines(report)]
     told += given_up_lines(report) + blend_lines(report.blends) + turned_lines(report)
+    told += slide_lines(report.slide_on_way_back_m)
     told += [AS_RECORDED[report.durations]] if report.durations in AS_RECORDED else []
     told += [line_told(line) for line in most_telling(report.failed)]
     missed = [missed_line(report.missed_contacts)] if report.missed_contacts else []
@@ -199,6 +201,16 @@ def blend_lines(blends: Sequence[BlendReport]) -> list[str]:
         "frames"
         for each in blends
         if each.off_m > FAR_OFF and each.speed_m_s > each.take_speed_m_s + LURCH
+    ]
+
+
+def slide_lines(slide: float) -> list[str]:
+    """Standing feet that slide, m, as a take goes back to where it was, if they do: a line."""
+    if slide <= SLIDES:
+        return []
+    return [
+        f"Standing feet slide by {1000.0 * slide:.0f} mm on the way back to where the take was; "
+        "let the range end earlier, or what follows be carried along"
     ]
 
 

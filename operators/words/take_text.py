@@ -13,7 +13,6 @@ from ...solver.data.requests import PoseRequest
 
 LEAST_SHIFT_MM = 5.0  # of the centre of mass, by which a flight is hardly told from a parabola
 _LEVEL = 0.0005  # m
-_SLIDES = 0.01  # m, of feet on the way back, that shows
 _STRAIGHT = 0.05  # degrees
 
 
@@ -150,12 +149,6 @@ def _carried(written: WrittenTake, roles: Mapping[str, str]) -> Iterator[str]:
     yield f"  {', '.join(parts)}"
     if written.back is not None:
         yield f"  It is back where it was at frame {written.back:g}"
-        if written.slide > _SLIDES:
-            room = _frames(round(written.back - written.span.last))
-            yield (
-                f"  On the way, of {room}, standing feet slide by {1000.0 * written.slide:.0f} mm; "
-                "let the range end earlier, or what follows be carried along"
-            )
 
 
 def _controls(kept: KeptByControls) -> Iterator[str]:

@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from ....solver.data.contacts import ContactSchedule, KnownContacts
+from ...accessors import ATTRIBUTE
 from ...hidden_texts import HiddenText, listed, number, word
 from ...played_strips import StripTime
 from ..settings import action_settings
@@ -52,7 +53,8 @@ def _cut(known: KnownContacts, first: float, last: float) -> KnownContacts:
 
 def known_contacts(action: bpy.types.Action, time: StripTime | None = None) -> Known:
     """What is known of an action, in scene frames. time: of the strip that plays it."""
-    known = KNOWN.of(action_settings(action).known_contacts)
+    kept = getattr(action, ATTRIBUTE, None)  # none without registration
+    known = KNOWN.of(kept.known_contacts if kept is not None else "")
     if time is None:
         return known
     start, scale = float(time.to_scene(np.zeros(1))[0]), time.scale

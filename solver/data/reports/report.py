@@ -127,6 +127,7 @@ class Report:
     no way to hold. accepted_contacts: those that it holds near enough to their places.
     missed_contacts: those that the written keys do not show where they were solved to be.
     blends: how the take goes over into the adapted frames and out of them, where it does.
+    slide_on_way_back_m: by how much standing feet slide as the take goes back to where it was.
     lifted_flights: where nothing touches for longer as contacts were lifted. fast_joint: one that
     goes faster than a person's, or would.
     """
@@ -167,6 +168,7 @@ class Report:
     accepted_contacts: tuple[AcceptedReport, ...] = ()
     missed_contacts: tuple[MissedContact, ...] = ()
     blends: tuple[BlendReport, ...] = ()
+    slide_on_way_back_m: float = 0.0
     lifted_flights: tuple[LiftedFlight, ...] = ()
 
     @property

@@ -50,6 +50,14 @@ def test_a_flight_that_lifting_made_longer_is_told_with_its_frames() -> None:
     assert "0.77 s" in line
 
 
+def test_feet_that_slide_on_the_way_back_are_told() -> None:
+    problem = MotionProblem()
+    made = report(adapt(fitted_hop(), problem), problem, Origin("hop"))
+    assert headline(replace(made, slide_on_way_back_m=0.009)) == headline(made)
+    (told,) = set(headline(replace(made, slide_on_way_back_m=0.0617))) - set(headline(made))
+    assert told.startswith("  Standing feet slide by 62 mm on the way back to where the take was;")
+
+
 def test_a_blend_that_has_far_to_go_is_told_with_its_speed_and_a_remedy() -> None:
     problem = MotionProblem()
     made = report(adapt(fitted_hop(), problem), problem, Origin("hop"))
