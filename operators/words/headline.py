@@ -3,9 +3,11 @@ accepted, what failed."""
 
 from collections.abc import Sequence
 
+from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.faults import NoFit, NoSolution
 from ...solver.data.reports.certificate import CertificateItem, CertificateLine
 from ...solver.data.reports.constraints import AcceptedReport, ConstraintReport, FitNeeds
+from ...solver.data.reports.jumps import PhaseReport
 from ...solver.data.reports.keys import BlendReport, MissedContact
 from ...solver.data.reports.report import FitQuality, Report
 from ...solver.data.row_kinds import RowKind
@@ -24,6 +26,7 @@ FAR_OFF = 0.05  # m, beside the take; a blend of less is hardly seen
 SLIDES = 0.01  # m, of feet on the way back, that shows
 LURCH = 0.5  # m/s, by which a blend's hips are faster than the take's; of less, likewise
 LEAST_TURNED = 1.0  # degrees, of a loop's way; a recorded one weaves by about as much
+LEAST_RETIMED = 0.0005  # s
 FITS = (CertificateItem.FIT_RMS, CertificateItem.FIT_WORST_FRAME)
 
 # What may be done about keys that do not show what was solved.
@@ -69,9 +72,25 @@ def headline(report: Report) -> list[str]:
     told += given_up_lines(report) + blend_lines(report.blends) + turned_lines(report)
     told += slide_lines(report.slide_on_way_back_m)
     told += [AS_RECORDED[report.durations]] if report.durations in AS_RECORDED else []
+    told += other_gravity_lines(report)
     told += [line_told(line) for line in most_telling(report.failed)]
     missed = [missed_line(report.missed_contacts)] if report.missed_contacts else []
     return [*missed, _solved(report), *(f"  {line}" for line in told)]
+
+
+def retimed(report: Report) -> list[PhaseReport]:
+    """The phases that take another time than they took."""
+    return [p for p in report.phases if abs(p.adapted_s - p.recorded_s) > LEAST_RETIMED]
+
+
+def other_gravity_lines(report: Report) -> list[str]:
+    """Flights that last as recorded though the body falls at another rate, if some do: a line."""
+    gravity = report.figure.gravity_m_s2
+    flights = {jump.flight for jump in report.jumps} - {phase.phase for phase in retimed(report)}
+    if gravity == STANDARD_GRAVITY or not flights:
+        return []
+    as_there = "longer" if gravity < STANDARD_GRAVITY else "shorter"
+    return [f"Flights last as recorded at this gravity, too; a Timing makes them {as_there}"]
 
 
 def turned_lines(report: Report) -> list[str]:

@@ -7,7 +7,6 @@ from ...bridge.rows.choices import KeyChoice
 from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.contacts import PhaseKind, phase_title
 from ...solver.data.reports.constraints import ConstraintReport
-from ...solver.data.reports.jumps import PhaseReport
 from ...solver.data.reports.keys import KeysReport
 from ...solver.data.reports.recording import Origin
 from ...solver.data.reports.report import Report
@@ -20,6 +19,7 @@ from .headline import (
     line_told,
     most_telling,
     plain,
+    retimed,
     turned_lines,
     with_unit,
 )
@@ -29,7 +29,6 @@ LEFT_AT_MOST = {
     PhaseKind.FLIGHT: 0.001,
     PhaseKind.GROUND: 0.02,
 }  # BW·m, rms; what the project promises
-LEAST_RETIMED = 0.0005  # s
 LEAST_TURN = 1.0  # degrees of a joint, to be told
 SAME_SPEED = 0.05  # m/s
 DURATIONS = {  # where they are not as one would expect
@@ -200,11 +199,6 @@ def moving_ground_lines(report: Report) -> Iterator[str]:
         yield f"{phase:<11} rides on {each.object} at {speeds} m/s"
         if each.kept_speed_share is not None:
             yield f"            and leaves it with {100 * each.kept_speed_share:.0f} % of its speed"
-
-
-def retimed(report: Report) -> list[PhaseReport]:
-    """The phases that take another time than they took."""
-    return [p for p in report.phases if abs(p.adapted_s - p.recorded_s) > LEAST_RETIMED]
 
 
 def durations_lines(report: Report) -> list[str]:

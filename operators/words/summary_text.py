@@ -6,7 +6,14 @@ from ...solver.data.contacts import phase_title
 from ...solver.data.reports.constraints import ConstraintReport, ContactReport
 from ...solver.data.reports.dynamics import ForcePeak
 from ...solver.worker.protocol import Adapted
-from .headline import accepted_lines, given_up_lines, lifted_lines, nearness
+from .headline import (
+    accepted_lines,
+    given_up_lines,
+    lifted_lines,
+    nearness,
+    other_gravity_lines,
+    retimed,
+)
 from .report_text import (
     amount,
     certificate_lines,
@@ -14,7 +21,6 @@ from .report_text import (
     gravity_lines,
     joint_lines,
     loop_lines,
-    retimed,
 )
 
 
@@ -44,6 +50,7 @@ def summary(answer: Adapted, roles: Mapping[str, str]) -> str:
             ),
             *(f"Durations: {line[0].lower()}{line[1:]}" for line in durations_lines(report)),
             *(f"Gravity: {line}" for line in gravity_lines(report.figure.gravity_m_s2)),
+            *other_gravity_lines(report),
             *([] if peak is None else [_peak(peak, report.forces.recorded_peak_bw)]),
             *given_up_lines(report),
             *loop_lines(report),

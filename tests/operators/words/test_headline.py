@@ -58,6 +58,16 @@ def test_feet_that_slide_on_the_way_back_are_told() -> None:
     assert told.startswith("  Standing feet slide by 62 mm on the way back to where the take was;")
 
 
+def test_flights_that_last_as_recorded_in_another_gravity_are_told() -> None:
+    problem = MotionProblem()
+    made = report(adapt(fitted_hop(), problem), problem, Origin("hop"))
+    there = replace(made, figure=replace(made.figure, gravity_m_s2=1.62))
+    (told,) = set(headline(there)) - set(headline(made))
+    assert told == "  Flights last as recorded at this gravity, too; a Timing makes them longer"
+    timed = tuple(replace(phase, adapted_s=2.0 * phase.recorded_s) for phase in made.phases)
+    assert headline(replace(there, phases=timed)) == headline(made)
+
+
 def test_a_blend_that_has_far_to_go_is_told_with_its_speed_and_a_remedy() -> None:
     problem = MotionProblem()
     made = report(adapt(fitted_hop(), problem), problem, Origin("hop"))
