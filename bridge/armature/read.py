@@ -10,7 +10,7 @@ from ...solver.arrays import FloatArray
 from ...solver.data.faults import BadScale, NoArmature, NoBones, NonFiniteKey
 from ...solver.data.recording import Bone, Recording
 from ..accessors import armature_data, current_action, current_scene, present
-from ..properties.of_actions.known_contacts import known_contacts
+from ..properties.of_actions.known_contacts import known_at
 from . import fcurves
 from .channels import proper
 from .played import require_unblended, require_unstarred, strip_time, why_no_action
@@ -102,7 +102,7 @@ def recording_of(armature: bpy.types.Object, frames: FloatArray, poses: Poses) -
         times=(frames - frames[0]) / frames_per_second(current_scene()),
         heads=world[..., :3, 3] * metres,
         rotations=proper(world[..., :3, :3]),
-        known=known_contacts(action, strip_time(armature, action)),
+        known=known_at(action, (frames[0], frames[-1]), strip_time(armature, action)),
     )
 
 

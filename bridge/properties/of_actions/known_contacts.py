@@ -51,14 +51,27 @@ def _cut(known: KnownContacts, first: float, last: float) -> KnownContacts:
     return KnownContacts(max(known.first, first), min(known.last, last), contacts)
 
 
-def known_contacts(action: bpy.types.Action, time: StripTime | None = None) -> Known:
-    """What is known of an action, in scene frames. time: of the strip that plays it."""
+def known_contacts(action: bpy.types.Action) -> Known:
+    """What is known of an action, in its own frames."""
     kept = getattr(action, ATTRIBUTE, None)  # none without registration
-    known = KNOWN.of(kept.known_contacts if kept is not None else "")
-    if time is None:
+    return KNOWN.of(kept.known_contacts if kept is not None else "")
+
+
+def known_at(action: bpy.types.Action, ends: tuple[float, float], time: StripTime | None) -> Known:
+    """What is known of an action between two scene frames, in all cycles of one that repeats.
+
+    time: of the strip that plays it; its cycles are the strip's.
+    """
+    known = known_contacts(action)
+    if time is not None:
+        start, scale = float(time.to_scene(np.zeros(1))[0]), time.scale
+        return tuple(_mapped(each, start, scale) for each in known)
+    period = action.frame_end - action.frame_start
+    if not known or not (action.use_frame_range and action.use_cyclic) or period <= 0.0:
         return known
-    start, scale = float(time.to_scene(np.zeros(1))[0]), time.scale
-    return tuple(_mapped(each, start, scale) for each in known)
+    first = int(np.floor((ends[0] - known[-1].last) / period))
+    last = int(np.ceil((ends[1] - known[0].first) / period))
+    return tuple(_mapped(each, k * period) for k in range(first, last + 1) for each in known)
 
 
 def _mapped(known: KnownContacts, later: float, scale: float = 1.0) -> KnownContacts:

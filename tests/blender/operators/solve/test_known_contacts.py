@@ -8,7 +8,12 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import current_action
 from hangtime.bridge.action_slots import all_curves
-from hangtime.bridge.properties.of_actions.known_contacts import known_contacts
+from hangtime.bridge.properties.of_actions.known_contacts import (
+    known_at,
+    known_contacts,
+    store_known,
+)
+from hangtime.solver.data.contacts import KnownContacts
 
 SLOWER = 1.5
 CUT = 0.51  # frames; contacts that the range cuts off end on a whole frame
@@ -51,3 +56,26 @@ def test_a_take_that_was_retimed_since_is_looked_at(adapted: bpy.types.Object) -
     landed = max(start for _, start, _ in known.contacts)
     now = [start for start, _ in analysed(adapted).values()]
     assert max(now) > landed + 40.0
+
+
+def test_a_cycle_has_its_contacts_in_every_one() -> None:
+    action = bpy.data.actions.new("Loop")
+    store_known(action, (KnownContacts(1.0, 21.0, (("Left toe", 3.0, 9.0),)),), None, 0)
+    assert [each.first for each in known_at(action, (1.0, 40.0), None)] == [1.0]
+    action.use_frame_range = action.use_cyclic = True
+    action.frame_start, action.frame_end = 1.0, 21.0
+    known = known_at(action, (1.0, 40.0), None)
+    assert [each.first for each in known][:3] == [-19.0, 1.0, 21.0]
+    assert known[2].contacts == (("Left toe", 23.0, 29.0),)
+
+
+def test_an_adaptation_replaces_what_was_known_of_its_frames_alone() -> None:
+    source, made = bpy.data.actions.new("First"), bpy.data.actions.new("Second")
+    early, late = (("Left toe", 3.0, 60.0),), (("Left toe", 90.0, 120.0),)
+    store_known(source, (KnownContacts(1.0, 120.0, (*early, *late)),), None, 0)
+    own = KnownContacts(40.0, 83.0, (("Right toe", 50.0, 70.0),))
+    store_known(made, (own,), source, 3)
+    before, now, after = known_contacts(made)
+    assert before == KnownContacts(1.0, 40.0, (("Left toe", 3.0, 40.0),))
+    assert now == own
+    assert after == KnownContacts(83.0, 123.0, (("Left toe", 93.0, 123.0),))
