@@ -194,7 +194,7 @@ def _write_controls(
     carried = loop.travels and (loop.root is None or loop.root.name in rig.carriers)
     with showing():
         travel = shifts_of_carriers(rig, float(frames[0]), loop.travel)
-        rests = {channel: channel.at_rest(armature) for channel in owned_by(rig)}
+        rests = {channel: channel.at_rest(armature) for channel in owned_by(rig, curves)}
     for channel, rest in rests.items():
         recorded = channel.recorded(curves, rest, frames[:1])
         values = channel.values(armature, bases[channel.bone], recorded)

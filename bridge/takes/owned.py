@@ -93,13 +93,16 @@ def carrying_bones(armature: bpy.types.Object, bones: tuple[str, ...]) -> tuple[
     return bones[:1] + tuple(each for each in bones[1:] if not rest[each].use_inherit_rotation)
 
 
-def owned_by(rig: ControlRig) -> Iterator[OwnedChannel]:
-    """The channels of the controls that pose a rig's bodies."""
+def owned_by(rig: ControlRig, curves: CurveHolder) -> Iterator[OwnedChannel]:
+    """The channels of the controls that pose a rig's bodies. A control that carries the figure turns
+    with it where it has keys of its turn, though that poses nothing, as a pole's."""
+    keyed = {curve.data_path for curve in curves.fcurves}
     for name, freedoms in rig.used.items():
         bone, carries = pose_of(rig.armature).bones[name], name in rig.carriers
-        if Freedom.TURN in freedoms or carries:
-            attribute = rotation_channel(bone)
-            yield OwnedChannel(name, bone.path_from_id(attribute), attribute, carries)
+        attribute = rotation_channel(bone)
+        path = bone.path_from_id(attribute)
+        if Freedom.TURN in freedoms or (carries and path in keyed):
+            yield OwnedChannel(name, path, attribute, carries)
         if Freedom.SHIFT in freedoms:
             yield OwnedChannel(name, bone.path_from_id("location"), "location", carries)
         if Freedom.SIZE in freedoms:

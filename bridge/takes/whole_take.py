@@ -60,7 +60,7 @@ def write_take(
     assert curves is not None
     bones = motion.track.bones
     rig = yield from _controls(armature, action, motion)
-    owned = tuple(owned_channels(armature, bones) if rig is None else owned_by(rig))
+    owned = tuple(owned_channels(armature, bones) if rig is None else owned_by(rig, curves))
     carrying = carrying_bones(armature, bones) if rig is None else bones[:1]
     plan = planned(curves, motion)
     yield from _retime(action, curves, owned, plan.time, alone=motion.options.others_stay)

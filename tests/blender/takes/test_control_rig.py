@@ -167,6 +167,24 @@ def test_a_rig_made_by_hand_with_feet_and_poles_is_posed_through_these() -> None
     assert np.degrees(posed.turned.max()) < 0.05
 
 
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_pole_gets_keys_of_its_turn_only_where_the_take_has_some(turned: bool) -> None:
+    rig = ik_rig()
+    pole = rig.pose.bones["knee_pole.L"]
+    for frame in (1, 4):
+        rig.pose.bones["hips"].location.y = -0.05 * frame
+        rig.pose.bones["hips"].keyframe_insert("location", frame=frame)
+        pole.keyframe_insert("location", frame=frame)
+        if turned:
+            pole.keyframe_insert("rotation_quaternion", frame=frame)
+    track, span = moved_take(rig, 4), (1.0, 4.0)
+    motion = AdaptedMotion(track, TimeMap(span, span), None, ResultOptions())
+    write_result(rig, motion, name="Result")
+    paths = {curve.data_path for curve in curves_of(rig)}
+    assert pole.path_from_id("location") in paths
+    assert (pole.path_from_id("rotation_quaternion") in paths) == turned
+
+
 @pytest.mark.parametrize("lower", [0.0, 0.002, 0.01])
 def test_a_leg_that_was_pulled_straight_is_bent_again(lower: float) -> None:
     """While its foot's control is out of reach no small pull along the leg does anything."""
