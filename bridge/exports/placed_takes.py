@@ -14,11 +14,11 @@ from ..accessors import armature_data, assigned_action, current_scene, present
 from ..action_slots import span_of
 from ..armature import fcurves
 from ..armature.poses import Poses, sample
+from ..companions.root_motion import way, without_turns
 from ..recipe.export import ExportOptions
 from ..rows.choices import FileFormat, RootMotion
 from .baked_rig import BakedTake
 from .engines import CONVENTIONS, format_of
-from .root_motion import way, without_turns
 from .skeleton import Outline, Skeleton, outline, scale_of, skeleton
 
 _STILL = 1e-5  # Blender units, by which an object that rests may move

@@ -15,7 +15,7 @@ from ..controls.driven import is_driven
 from ..properties.settings import action_settings, settings_of
 from ..rows.choices import BodyKind
 from ..takes.options import loop_options
-from ..takes.owned import owned_channels
+from ..takes.owned import owned_channels, placing_channels
 from ..takes.take_time import TakeTime
 from ..takes.takes import polished_result
 from .hand_offsets import Polish, polish_of, without
@@ -49,14 +49,16 @@ class Renewal:
         self,
         action: bpy.types.Action,
         bones: tuple[str, ...],
+        companions: tuple[str, ...],
         time: TakeTime,
         schedule: ContactSchedule,
         rate: float,
     ) -> Incremental[tuple[MovedPin, ...]]:
         """Put the polish on a new result, which the armature shows; tells which pins that moves.
 
-        bones: the bodies', the pelvis first. time: where the take's frames are in it. schedule,
-        rate (frames a s): its contacts, from its first adapted frame on.
+        bones: the bodies', the pelvis first. companions: others that go along. time: where the
+        take's frames are in it. schedule, rate (frames a s): its contacts, from its first adapted
+        frame on.
         """
         if self.polish is None:
             return ()
@@ -69,6 +71,8 @@ class Renewal:
         owned = None
         if not is_driven(self.armature, bones):  # else it is not known which controls were written
             owned = {channel.path for channel in owned_channels(self.armature, bones)}
+            for bone in companions:
+                owned.update(channel.path for channel in placing_channels(self.armature, bone))
         put_on(action, slot, place, before, owned)
         self.put = place
         now = yield from pinned.poses(self.armature)

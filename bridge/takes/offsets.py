@@ -7,14 +7,16 @@ every pin.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...solver.arrays import FloatArray
+from ...solver.arrays import BoolArray, FloatArray
 from ...solver.data.recording import PoseTrack
 from ...solver.data.reports.keys import BlendReport
 from ...solver.numerics.rotations import rotation_matrix, rotation_vector
+
+_SEAM_FRAMES = 3  # of which the speed at a seam is taken
 
 
 @dataclass(frozen=True)
@@ -91,4 +93,44 @@ def blend_report(shown: PoseTrack, take: PoseTrack, *, into: bool, rate: float) 
         speed_m_s=float(speeds[0][fastest]),
         frame=float(shown.frames[fastest]),
         take_speed_m_s=float(speeds[1].max()),
+    )
+
+
+def rows(track: PoseTrack, keep: BoolArray | slice) -> PoseTrack:
+    """Some of a track's frames (T,)."""
+    return replace(
+        track,
+        frames=track.frames[keep],
+        rotations=track.rotations[keep],
+        root_head=track.root_head[keep],
+    )
+
+
+def frames_from(track: PoseTrack, frame: float) -> PoseTrack:
+    """The frames from one on."""
+    return rows(track, track.frames >= frame)
+
+
+def frames_until(track: PoseTrack, frame: float) -> PoseTrack:
+    """The frames until one, it included."""
+    return rows(track, track.frames <= frame)
+
+
+def beginning(track: PoseTrack) -> PoseTrack:
+    """The first frames, of which the speed at a seam is taken."""
+    return rows(track, slice(_SEAM_FRAMES))
+
+
+def backwards(track: PoseTrack) -> PoseTrack:
+    """The last frames, the last one first."""
+    return beginning(rows(track, slice(None, None, -1)))
+
+
+def joined(tracks: list[PoseTrack]) -> PoseTrack:
+    """Tracks of the same bones, one after the other."""
+    return PoseTrack(
+        np.concatenate([track.frames for track in tracks]),
+        tracks[0].bones,
+        np.concatenate([track.rotations for track in tracks]),
+        np.concatenate([track.root_head for track in tracks]),
     )

@@ -1,4 +1,4 @@
-"""Channels that a result owns: rotations of bodies' bones, and where the figure is."""
+"""Channels that a result owns: of bodies' bones, where the figure is, and what goes along."""
 
 from __future__ import annotations
 
@@ -9,14 +9,17 @@ import bpy
 import numpy as np
 
 from ...solver.arrays import FloatArray
+from ...solver.data.stance_move import StanceMove
 from ..accessors import armature_data, pose_of
 from ..armature.fcurves import CurveHolder
 from ..armature.pose_basis import carrier_of
 from ..armature.write import property_values, rotation_channel, steady_properties
+from ..companions.found import Companions
 from ..controls.control_rig import ControlRig
 from ..controls.responses import Freedom
 from .key_splice import FullTurns
 
+_STRAIGHT = 1e-3  # rad, by which a stance may turn where a root bone need not turn with it
 _WHOLE = 0.5  # rad, by which angles may miss whole turns to count as such
 
 
@@ -93,9 +96,35 @@ def carrying_bones(armature: bpy.types.Object, bones: tuple[str, ...]) -> tuple[
     return bones[:1] + tuple(each for each in bones[1:] if not rest[each].use_inherit_rotation)
 
 
+def placing_channels(
+    armature: bpy.types.Object, bone: str, *, turns: bool = True, carries: bool = False
+) -> Iterator[OwnedChannel]:
+    """The channels that place a bone beside the body and, where it turns, turn it."""
+    posed = pose_of(armature).bones[bone]
+    for attribute in ("location", *[rotation_channel(posed)] * turns):
+        yield OwnedChannel(bone, posed.path_from_id(attribute), attribute, carries)
+
+
+def company_channels(
+    armature: bpy.types.Object,
+    curves: CurveHolder,
+    company: Companions,
+    moved: StanceMove | None,
+) -> tuple[tuple[OwnedChannel, ...], tuple[OwnedChannel, ...]]:
+    """The channels of the root bone, which turns where the last stance does, and those with keys of
+    what keeps its place on the body."""
+    root: Iterable[OwnedChannel] = ()
+    if company.root is not None:
+        turns = moved is not None and abs(moved.turn) > _STRAIGHT
+        root = placing_channels(armature, company.root, turns=turns, carries=True)
+    keyed = {curve.data_path for curve in curves.fcurves}
+    channels = (c for bone, _ in company.followers for c in placing_channels(armature, bone))
+    return tuple(root), tuple(channel for channel in channels if channel.path in keyed)
+
+
 def owned_by(rig: ControlRig, curves: CurveHolder) -> Iterator[OwnedChannel]:
-    """The channels of the controls that pose a rig's bodies. A control that carries the figure turns
-    with it where it has keys of its turn, though that poses nothing, as a pole's."""
+    """The channels of the controls that pose a rig's bodies. One that carries the figure turns with
+    it where it has keys of its turn, though that poses nothing, as a pole's."""
     keyed = {curve.data_path for curve in curves.fcurves}
     for name, freedoms in rig.used.items():
         bone, carries = pose_of(rig.armature).bones[name], name in rig.carriers

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ...solver.arrays import FloatArray
 from ...solver.data.reports.keys import BlendReport
 from ...solver.data.stance_move import StanceMove
+from ..companions.found import Companions
 from ..controls.control_rig import ControlRig
 from ..controls.kept import KeptByControls
 from .offsets import remaining
@@ -78,7 +79,8 @@ class WrittenTake:
 
     time: where the take's frames are in the result. applied: bones whose curves had modifiers, or
     were muted, and are keys now. held: bones that moved joints within the body, and hold still now.
-    slide: m, by which the way back makes standing feet slide.
+    slide: m, by which the way back makes standing feet slide. companions: bones outside of the body
+    that went along with it.
     controls: how near the bodies are that controls pose, and rig: these controls; None where bodies
     have keys of their own. blends: how they move the hips, where there are frames to blend.
     """
@@ -93,6 +95,7 @@ class WrittenTake:
     rig: ControlRig | None = None
     slide: float = 0.0
     blends: tuple[BlendReport, ...] = ()
+    companions: Companions = field(default_factory=Companions)
 
     @property
     def later(self) -> int:

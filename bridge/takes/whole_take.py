@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, replace
 from functools import partial
 
 import bpy
 import numpy as np
 
-from ...solver.arrays import BoolArray, FloatArray
+from ...solver.arrays import FloatArray
 from ...solver.data.recording import PoseTrack
 from ...solver.data.reports.keys import BlendReport
 from ...solver.data.stance_move import StanceMove
@@ -22,6 +23,8 @@ from ..armature.incremental import Incremental, sample_incrementally
 from ..armature.pose_basis import pose_bases
 from ..armature.poses import Poses, frames_per_second, metres_per_unit
 from ..armature.steady_joints import steady_bases
+from ..companions.found import Companions, found_companions, holders_of
+from ..companions.moves import differs, following_bases, root_basis
 from ..controls.control_rig import (
     ControlRig,
     carried_controls,
@@ -33,15 +36,72 @@ from ..controls.kept import kept_by
 from ..controls.targets import targets_of
 from .carry import carried, shares_of_return, slid
 from .key_splice import FullTurns, anchor, applied, retime, splice
-from .offsets import blend_report, faded, seam_offset
-from .owned import OwnedChannel, carrying_bones, owned_by, owned_channels, steady_channels
+from .offsets import (
+    backwards,
+    beginning,
+    blend_report,
+    faded,
+    frames_from,
+    frames_until,
+    joined,
+    rows,
+    seam_offset,
+)
+from .owned import (
+    OwnedChannel,
+    carrying_bones,
+    company_channels,
+    owned_by,
+    owned_channels,
+    steady_channels,
+)
 from .plain_root import plain_poses
 from .plan import AdaptedMotion, Plan, planned
 from .span import ResultSpan, WrittenTake
 from .take_time import TakeTime
 
-_SEAM_FRAMES = 3  # of which the speed at a seam is taken
 _RETIMED_A_SLICE = 10  # curves
+
+
+@dataclass(frozen=True)
+class _Copy:
+    """The copy of a take that becomes a result. seen: bones of which poses are wanted after the
+    body's frames; None where keys alone do not tell them."""
+
+    armature: bpy.types.Object
+    action: bpy.types.Action
+    curves: fcurves.CurveHolder
+    plan: Plan
+    seen: tuple[str, ...] | None
+
+    def showing(self) -> AbstractContextManager[None]:
+        """Context in which the armature performs it."""
+        return showing_action(self.armature, self.action)
+
+    def poses(self) -> Incremental[tuple[Poses, Poses | None]]:
+        """As its keys are now: at the body's frames, and at those that follow, if there are any."""
+        self.action.update_tag()
+        poses = yield from sample_incrementally(self.armature, self.plan.body_frames, self.showing)
+        frames, later = self.plan.rest_frames, None
+        if len(frames) and self.seen is not None:
+            later = plain_poses(self.armature, self.curves, self.seen, frames)
+        if len(frames) and later is None:
+            later = yield from sample_incrementally(self.armature, frames, self.showing)
+        return poses, later
+
+    def write(self, channel: OwnedChannel, rest: FloatArray, bases: FloatArray) -> None:
+        """Put a bone's bases (T, 4, 4) at the body's frames, and those that follow, into its
+        curves. rest: (n,) of the channel, where nothing animates it."""
+        plan, curves = self.plan, self.curves
+        frames = np.concatenate([plan.body_frames, plan.rest_frames])[: len(bases)]
+        recorded = channel.recorded(curves, rest, frames)
+        values = channel.values(self.armature, bases, recorded)
+        goes_on = plan.span.blend_out > 0.0 or len(frames) > len(plan.body_frames)
+        turns = channel.turns(values, recorded) if goes_on else [FullTurns()] * values.shape[1]
+        for index, column in enumerate(values.T):
+            curve = fcurves.ensured(curves, channel.path, index, channel.bone)
+            anchor(curve, plan.between(channel), plan.beside(channel), rest[index])
+            splice(curve, frames, column, plan.between(channel), turns[index])
 
 
 def write_take(
@@ -60,49 +120,45 @@ def write_take(
     assert curves is not None
     bones = motion.track.bones
     rig = yield from _controls(armature, action, motion)
-    owned = tuple(owned_channels(armature, bones) if rig is None else owned_by(rig, curves))
-    carrying = carrying_bones(armature, bones) if rig is None else bones[:1]
-    plan = planned(curves, motion)
-    yield from _retime(action, curves, owned, plan.time, alone=motion.options.others_stay)
     showing = partial(showing_action, armature, action)
+    apart = () if rig is None else tuple(rig.used)
+    company = yield from found_companions(armature, curves, bones, apart, showing)
+    roots, following = company_channels(armature, curves, company, motion.moved)
+    owned = tuple(owned_channels(armature, bones) if rig is None else owned_by(rig, curves))
+    every = (*owned, *roots, *following)
+    plan = planned(curves, motion)
+    alone = None
+    if motion.options.others_stay:
+        above = holders_of(armature, company, bones)
+        alone = {channel.path for channel in every} | _paths_of(curves, above)
+    yield from _retime(action, curves, alone, plan.time)
     with showing():
-        rests = {channel: channel.at_rest(armature) for channel in owned}
+        rests = {channel: channel.at_rest(armature) for channel in every}
     done = _apply_modifiers(curves, rests, plan.span)
-    action.update_tag()
-    poses = yield from sample_incrementally(armature, plan.body_frames, showing)
-    later = None
-    if len(plan.rest_frames):
-        if rig is None:
-            looked_at = carrying if plan.back is None else bones
-            later = plain_poses(armature, curves, looked_at, plan.rest_frames)
-        if later is None:
-            later = yield from sample_incrementally(armature, plan.rest_frames, showing)
+    carrying = carrying_bones(armature, bones) if rig is None else bones[:1]
+    seen = (*(carrying if plan.back is None else bones), *company.bones)
+    copy = _Copy(armature, action, curves, plan, seen if rig is None else None)
+    poses, later = was = yield from copy.poses()
     shares, slide = _shares(poses, later, plan, bones)
     body, rest, blends = _tracks(poses, later, plan, motion, (carrying, shares))
     yield None
+    if roots:  # under which the body is posed then
+        bases = _root_bases(armature, roots, was, (body, rest))
+        for channel in roots:
+            copy.write(channel, rests[channel], bases)
+        poses, later = yield from copy.poses()
+    steady: dict[str, FloatArray] = {}
     held: dict[OwnedChannel, FloatArray] = {}
     if rig is None:
-        recording = partial(showing_action, armature, take)
-        steady = yield from steady_bases(
-            armature, poses, bones, motion.recorded_frames, recording, plan.shares
-        )
-        moving = tuple(steady_channels(armature, curves, bones, steady))
-        with showing():
-            held = {channel: channel.at_rest(armature) for channel in moving}
-        rests |= held
-        done += _apply_modifiers(curves, held, plan.span)
-        bases = yield from pose_bases(armature, poses, body, steady)
-    else:
-        bases = (yield from control_poses(rig, poses, body, showing)).bases
-    if later is not None and rest is not None:
-        if rig is None:
-            more = yield from pose_bases(armature, later, rest, {})
-        else:
-            more = yield from carried_controls(rig, later, rest, showing)
-        bases |= {c.bone: np.concatenate([bases[c.bone], more[c.bone]]) for c in owned if c.carries}
-    for channel in rests:
-        _write_channel(armature, curves, channel, rests[channel], bases[channel.bone], plan)
+        steady, held = yield from _steady(copy, poses, take, motion)
+    done += _apply_modifiers(curves, held, plan.span)
+    carriers = {channel.bone for channel in owned if channel.carries}
+    posed = yield from _bases(copy, rig, ((poses, later), (body, rest)), steady, carriers)
+    for channel, at_rest in ({each: rests[each] for each in owned} | held).items():
+        copy.write(channel, at_rest, posed[channel.bone])
         yield None
+    followed = {channel: rests[channel] for channel in following}
+    company = yield from _follow(copy, company, was, bones[0], followed)
     if motion.ends:
         for curve in all_curves(action):
             fcurves.crop(curve, min(plan.span.begin, plan.span.first), plan.span.last)
@@ -111,10 +167,89 @@ def write_take(
     kept = None
     if rig is not None:
         shown = yield from sample_incrementally(armature, plan.body_frames, showing)
-        kept = kept_by(shown, targets_of(armature, poses, body), len(rig.used))
+        kept = kept_by(shown, targets_of(armature, was[0], body), len(rig.used))
     bones_held = tuple(dict.fromkeys(channel.bone for channel in held))
     about = plan.span, plan.moved, plan.back, plan.time
-    return WrittenTake(*about, done, bones_held, kept, rig, slide, blends)
+    return WrittenTake(*about, done, bones_held, kept, rig, slide, blends, company)
+
+
+def _root_bases(
+    armature: bpy.types.Object,
+    roots: tuple[OwnedChannel, ...],
+    was: tuple[Poses, Poses | None],
+    tracks: tuple[PoseTrack, PoseTrack | None],
+) -> FloatArray:
+    """(T, 4, 4) bases of a root bone, at the body's frames and those that follow. roots: its
+    channels."""
+    return np.concatenate(
+        [
+            root_basis(armature, roots[0].bone, poses, track, turns=len(roots) > 1)
+            for poses, track in zip(was, tracks, strict=True)
+            if poses is not None and track is not None
+        ]
+    )
+
+
+def _steady(
+    copy: _Copy, poses: Poses, take: bpy.types.Action, motion: AdaptedMotion
+) -> Incremental[tuple[dict[str, FloatArray], dict[OwnedChannel, FloatArray]]]:
+    """The bases of bones that hold joints, steady; and their channels, with these at rest."""
+    armature, bones = copy.armature, motion.track.bones
+    recording, frames = partial(showing_action, armature, take), motion.recorded_frames
+    steady = yield from steady_bases(armature, poses, bones, frames, recording, copy.plan.shares)
+    channels = tuple(steady_channels(armature, copy.curves, bones, steady))
+    with copy.showing():
+        return steady, {channel: channel.at_rest(armature) for channel in channels}
+
+
+def _bases(
+    copy: _Copy,
+    rig: ControlRig | None,
+    wanted: tuple[tuple[Poses, Poses | None], tuple[PoseTrack, PoseTrack | None]],
+    steady: Mapping[str, FloatArray],
+    carriers: Iterable[str],
+) -> Incremental[dict[str, FloatArray]]:
+    """Pose bases (T, 4, 4) of bones, or of a rig's controls, with which bodies are on tracks; of
+    carriers at the frames that follow, too. wanted: what is shown now, and the tracks."""
+    (poses, later), (body, rest) = wanted
+    if rig is None:
+        bases = yield from pose_bases(copy.armature, poses, body, steady)
+    else:
+        bases = (yield from control_poses(rig, poses, body, copy.showing)).bases
+    if later is not None and rest is not None:
+        if rig is None:
+            more = yield from pose_bases(copy.armature, later, rest, {})
+        else:
+            more = yield from carried_controls(rig, later, rest, copy.showing)
+        bases |= {bone: np.concatenate([bases[bone], more[bone]]) for bone in carriers}
+    return bases
+
+
+def _follow(
+    copy: _Copy,
+    company: Companions,
+    was: tuple[Poses, Poses | None],
+    pelvis: str,
+    rests: Mapping[OwnedChannel, FloatArray],
+) -> Incremental[Companions]:
+    """Put what keeps its place on the body back there, once that is written; returns what of it had
+    left its place. was: the take's poses. rests: of the channels."""
+    if not company.followers:
+        return company
+    now, later = yield from copy.poses()
+    bases = following_bases(copy.armature, company.followers, was[0], now)
+    left = {name for name, basis in bases.items() if differs(copy.armature, now, name, basis)}
+    if later is not None and was[1] is not None:  # where the figure is moved as one
+        riding = [(name, pelvis) for name, _ in company.followers]
+        for name, basis in following_bases(copy.armature, riding, was[1], later).items():
+            if differs(copy.armature, later, name, basis):
+                bases[name] = np.concatenate([bases[name], basis])
+                left.add(name)
+    for channel in (each for each in rests if each.bone in left):
+        further = len(bases[channel.bone]) > len(copy.plan.body_frames)
+        copy.write(replace(channel, carries=further), rests[channel], bases[channel.bone])
+        yield None
+    return replace(company, followers=tuple(e for e in company.followers if e[0] in left))
 
 
 def _controls(
@@ -127,25 +262,27 @@ def _controls(
     return (yield from found_controls(armature, motion.track.bones, frames, showing))
 
 
+def _paths_of(curves: fcurves.CurveHolder, bones: Collection[str]) -> set[str]:
+    paths = {curve.data_path for curve in curves.fcurves}
+    return {path for path in paths if fcurves.bone_of(path) in bones}
+
+
 def _retime(
     action: bpy.types.Action,
     curves: fcurves.CurveHolder,
-    owned: Iterable[OwnedChannel],
+    alone: Collection[str] | None,
     time: TakeTime,
-    *,
-    alone: bool,
 ) -> Incremental[None]:
-    """Move keys to where their frames are in the result; alone: only those of owned channels."""
+    """Move keys to where their frames are in the result; alone: only those of these paths."""
     if time.unchanged:
         return
-    mine = {channel.path for channel in owned}
-    every = list(curves.fcurves) if alone else all_curves(action)
+    every = all_curves(action) if alone is None else list(curves.fcurves)
     for count, curve in enumerate(every):
-        if not alone or curve.data_path in mine:
+        if alone is None or curve.data_path in alone:
             retime(curve, time)
         if count % _RETIMED_A_SLICE == 0:
             yield None
-    if alone:
+    if alone is not None:
         return
     for marker in action.pose_markers:
         marker.frame = round(float(time.to_result(np.array([marker.frame]))[0]))
@@ -184,26 +321,26 @@ def _tracks(
     rest = None
     if later is not None:
         rest = _take_of(later, carriers, plan.rest_frames)
-    following = _frames_from(take, span.last)
+    following = frames_from(take, span.last)
     count = len(following.frames)
     goal = _carried(following, plan.moved, shares[:count])
-    after = _rows(goal, slice(1, None))
+    after = rows(goal, slice(1, None))
     blends = []
     if len(span.after):
-        before = _frames_until(take, span.last)
+        before = frames_until(take, span.last)
         before = _carried(before, plan.moved, np.ones(len(before.frames)))
-        offset = seam_offset(_backwards(motion.track), _backwards(before))
+        offset = seam_offset(backwards(motion.track), backwards(before))
         after = faded(after, offset, after.frames - span.last, span.blend_out)
-        shown = _concatenated([_rows(motion.track, slice(-1, None)), after])
+        shown = joined([rows(motion.track, slice(-1, None)), after])
         blends.append(blend_report(shown, goal, into=False, rate=rate))
     into = list(_blended_in(take, span, motion.track))
     if into:
-        shown = _concatenated([*into, _rows(motion.track, slice(1))])
-        goal = _frames_until(take, span.first)
+        shown = joined([*into, rows(motion.track, slice(1))])
+        goal = frames_until(take, span.first)
         blends.insert(0, blend_report(shown, goal, into=True, rate=rate))
     if rest is not None:
         rest = _carried(rest, plan.moved, shares[count:])
-    return _concatenated([*into, motion.track, after]), rest, tuple(blends)
+    return joined([*into, motion.track, after]), rest, tuple(blends)
 
 
 def _shares(
@@ -236,9 +373,9 @@ def _carried(track: PoseTrack, move: StanceMove | None, shares: FloatArray) -> P
 
 
 def _blended_in(take: PoseTrack, span: ResultSpan, motion: PoseTrack) -> Iterator[PoseTrack]:
-    before = _rows(take, take.frames < span.first)
+    before = rows(take, take.frames < span.first)
     if len(before.frames):
-        offset = seam_offset(_start(motion), _start(_frames_from(take, span.first)))
+        offset = seam_offset(beginning(motion), beginning(frames_from(take, span.first)))
         yield faded(before, offset, span.first - before.frames, span.blend_in)
 
 
@@ -248,61 +385,3 @@ def _take_of(poses: Poses, bones: tuple[str, ...], frames: FloatArray) -> PoseTr
     columns = [poses.bones.index(bone) for bone in bones]
     heads = world[:, columns[0], :3, 3] * metres_per_unit(current_scene())
     return PoseTrack(frames, bones, proper(world[:, columns, :3, :3]), heads)
-
-
-def _rows(track: PoseTrack, keep: BoolArray | slice) -> PoseTrack:
-    return replace(
-        track,
-        frames=track.frames[keep],
-        rotations=track.rotations[keep],
-        root_head=track.root_head[keep],
-    )
-
-
-def _frames_from(track: PoseTrack, frame: float) -> PoseTrack:
-    return _rows(track, track.frames >= frame)
-
-
-def _frames_until(track: PoseTrack, frame: float) -> PoseTrack:
-    return _rows(track, track.frames <= frame)
-
-
-def _start(track: PoseTrack) -> PoseTrack:
-    return _rows(track, slice(_SEAM_FRAMES))
-
-
-def _backwards(track: PoseTrack) -> PoseTrack:
-    """The last frames, the last one first."""
-    return _start(_rows(track, slice(None, None, -1)))
-
-
-def _concatenated(tracks: list[PoseTrack]) -> PoseTrack:
-    return PoseTrack(
-        np.concatenate([track.frames for track in tracks]),
-        tracks[0].bones,
-        np.concatenate([track.rotations for track in tracks]),
-        np.concatenate([track.root_head for track in tracks]),
-    )
-
-
-def _write_channel(
-    armature: bpy.types.Object,
-    curves: fcurves.CurveHolder,
-    channel: OwnedChannel,
-    rest: FloatArray,
-    bases: FloatArray,
-    plan: Plan,
-) -> None:
-    """Put a bone's bases (T, 4, 4) at the body's frames, and those that follow, into its curves.
-
-    rest: (n,) of the channel, where nothing animates it.
-    """
-    frames = np.concatenate([plan.body_frames, plan.rest_frames])[: len(bases)]
-    recorded = channel.recorded(curves, rest, frames)
-    values = channel.values(armature, bases, recorded)
-    goes_on = plan.span.blend_out > 0.0 or len(frames) > len(plan.body_frames)
-    turns = channel.turns(values, recorded) if goes_on else [FullTurns()] * values.shape[1]
-    for index, column in enumerate(values.T):
-        curve = fcurves.ensured(curves, channel.path, index, channel.bone)
-        anchor(curve, plan.between(channel), plan.beside(channel), rest[index])
-        splice(curve, frames, column, plan.between(channel), turns[index])

@@ -17,6 +17,7 @@ from ..armature.incremental import Incremental, complete
 from ..armature.played import in_scene_time, scene_copy
 from ..armature.strips import lay_strips, strips_of
 from ..armature.write import write_incrementally
+from ..companions.found import placed_by_keys
 from ..controls.driven import is_driven
 from ..fake_users import guard
 from ..properties.settings import settings_of
@@ -144,8 +145,10 @@ def _write(
     slot: str | None,
     name: str,
 ) -> Incremental[tuple[bpy.types.Action, WrittenTake | None]]:
-    cut_off = motion.options.after is After.CUT
-    if cut_off and not is_driven(armature, motion.track.bones):
+    cut_off, bones = motion.options.after is After.CUT, motion.track.bones
+    if cut_off and not (
+        is_driven(armature, bones) or _has_company(armature, recorded, slot, bones)
+    ):
         showing = partial(showing_action, armature, recorded)
         cut = yield from write_incrementally(
             armature,
@@ -189,6 +192,12 @@ def _state_range(action: bpy.types.Action, motion: AdaptedMotion, *, alone: bool
         action.use_cyclic = False
     start, end = (first, last) if alone else (min(ends[0], first), max(ends[1], last))
     action.frame_start, action.frame_end = start, end
+def _has_company(
+    armature: bpy.types.Object, take: bpy.types.Action, slot: str | None, bones: tuple[str, ...]
+) -> bool:
+    """Whether a take moves other bones than the body's, which may have to go along with it."""
+    curves = fcurves.holder_in(take, slot)
+    return curves is not None and bool(placed_by_keys(armature, curves, bones))
 
 
 def forget_copied(action: bpy.types.Action) -> None:

@@ -159,7 +159,8 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     try:
         yield from _tell_missed(armature, armature, action, answer)
         rate = answer.report.recording.frames_per_second
-        moved = yield from renewal.put_on(action, answer.track.bones, time, answer.schedule, rate)
+        bones, along = answer.track.bones, () if written is None else written.companions.bones
+        moved = yield from renewal.put_on(action, bones, along, time, answer.schedule, rate)
         _tell_polish(armature, action, renewal, moved)
         rig = written.rig if written is not None else None
         yield from write_keys(armature, armature, action, answer, rig)

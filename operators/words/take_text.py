@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from math import degrees, hypot
 
+from ...bridge.companions.found import Companions
 from ...bridge.controls.aimed import Aimed
 from ...bridge.controls.kept import KeptByControls
 from ...bridge.polish.pins import MovedPin
@@ -45,6 +46,8 @@ def take_record(written: WrittenTake | KeptByControls) -> dict[str, object]:
         "later_frames": written.later,
         "curves_applied": list(written.applied),
         "bones_held": list(written.held),
+        "root_along": written.companions.root,
+        "bones_kept_on_body": dict(written.companions.followers),
     }
     if written.controls is not None:
         record["controls"] = asdict(written.controls)
@@ -76,10 +79,19 @@ def _lines(written: WrittenTake, roles: Mapping[str, str]) -> Iterator[str]:
         yield from _carried(written, roles)
     if written.controls is not None:
         yield from _controls(written.controls)
+    yield from _companions(written.companions)
     if written.held:
         yield f"Held still, for they moved joints within the body: {', '.join(written.held)}"
     if written.applied:
         yield f"Curves with modifiers, or muted, are plain keys now: {', '.join(written.applied)}"
+
+
+def _companions(companions: Companions) -> Iterator[str]:
+    if companions.root is not None:
+        yield f"{companions.root} goes along with the hips over the floor, as in the take"
+    if companions.followers:
+        pairs = ", ".join(f"{bone} ({body})" for bone, body in companions.followers)
+        yield f"Kept where they are on the body in the take: {pairs}"
 
 
 def polish_lines(polish: PlacedPolish | None) -> list[str]:

@@ -10,8 +10,8 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature.read import record
+from hangtime.bridge.companions.root_motion import way
 from hangtime.bridge.exports.export import export_takes
-from hangtime.bridge.exports.root_motion import way
 from hangtime.bridge.files.reimport import reimport
 from hangtime.bridge.recipe.export import ExportOptions
 from hangtime.bridge.rows.choices import Engine, FileFormat, RootMotion

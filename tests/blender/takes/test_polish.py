@@ -74,7 +74,9 @@ def adapt(
     motion = AdaptedMotion(track, times, None, chosen)
     action, written = complete(write_adapted_incrementally(armature, motion))
     time = written.time if written is not None else TakeTime.of(times, 1.0)
-    moved = complete(renewal.put_on(action, rigs.MOVING, time, ContactSchedule((), 1.0, 0.0), 24.0))
+    moved = complete(
+        renewal.put_on(action, rigs.MOVING, (), time, ContactSchedule((), 1.0, 0.0), 24.0)
+    )
     if chosen.written_as is WrittenAs.COMBINE:
         combine(armature, action, chosen.after)
     note_made(armature, action, written.span if written is not None else None, time.later)
