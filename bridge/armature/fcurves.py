@@ -131,6 +131,17 @@ def keys(curve: bpy.types.FCurve) -> FloatArray:
     return points.reshape(-1, 2).astype(np.float64)
 
 
+def values_at(curve: bpy.types.FCurve, frames: FloatArray) -> FloatArray:
+    """(T,) what a curve shows at frames (T,): where each has a key of its own, that is the key's
+    value, which is read a hundred times as fast."""
+    own = keys(curve)
+    index = np.searchsorted(own[:, 0], frames)
+    within = not len(curve.modifiers) and bool((index < len(own)).all())
+    if within and np.array_equal(own[index, 0], frames):
+        return np.asarray(own[index, 1])
+    return np.fromiter(map(curve.evaluate, frames.tolist()), float, len(frames))
+
+
 def scale_keys(curve: bpy.types.FCurve, frames: float, values: float) -> None:
     """Multiply the keys and handles of a curve, in time and value."""
     factors = np.array([frames, values], dtype=np.float32)

@@ -11,7 +11,7 @@ import numpy as np
 from ...solver.arrays import FloatArray
 from ...solver.data.stance_move import StanceMove
 from ..accessors import armature_data, pose_of
-from ..armature.fcurves import CurveHolder
+from ..armature.fcurves import CurveHolder, values_at
 from ..armature.pose_basis import carrier_of
 from ..armature.write import property_values, rotation_channel, steady_properties
 from ..companions.found import Companions
@@ -42,7 +42,7 @@ class OwnedChannel:
         for index in range(values.shape[1]):
             curve = curves.fcurves.find(self.path, index=index)
             if curve is not None:
-                values[:, index] = [curve.evaluate(frame) for frame in frames]
+                values[:, index] = values_at(curve, frames)
         return values
 
     def values(

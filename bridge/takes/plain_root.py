@@ -7,15 +7,14 @@ from __future__ import annotations
 
 import bpy
 import numpy as np
-from mathutils import Euler, Matrix, Quaternion
 
 from ...solver.arrays import FloatArray
 from ..accessors import armature_data, pose_of, present, take_strips
 from ..armature import fcurves
+from ..armature.channels import rotations_of
 from ..armature.pose_basis import place, with_ancestors
 from ..armature.poses import Poses
-
-_TRANSFORM = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
+from ..armature.write import rotation_channel
 
 
 def plain_poses(
@@ -52,21 +51,14 @@ def _plain(armature: bpy.types.Object, curves: fcurves.CurveHolder, bones: list[
 
 def _bases(bone: bpy.types.PoseBone, curves: fcurves.CurveHolder, frames: FloatArray) -> FloatArray:
     """(T, 4, 4) bases as Blender makes them of a bone's channels."""
-    values = {name: _values(bone, curves, name, frames) for name in _TRANSFORM}
-    bases = np.empty((len(frames), 4, 4))
-    for t in range(len(frames)):
-        at = {name: column[t] for name, column in values.items()}
-        bases[t] = Matrix.LocRotScale(at["location"], _turn(bone.rotation_mode, at), at["scale"])
+    location, rotation, scale = (
+        _values(bone, curves, name, frames)
+        for name in ("location", rotation_channel(bone), "scale")
+    )
+    bases = np.tile(np.eye(4), (len(frames), 1, 1))
+    bases[:, :3, :3] = rotations_of(rotation, bone.rotation_mode) * scale[:, None]
+    bases[:, :3, 3] = location
     return bases
-
-
-def _turn(mode: str, at: dict[str, FloatArray]) -> Quaternion | Euler:
-    if mode == "QUATERNION":
-        return Quaternion(at["rotation_quaternion"].tolist()).normalized()
-    if mode == "AXIS_ANGLE":
-        angle, *axis = at["rotation_axis_angle"].tolist()
-        return Quaternion(axis, angle)
-    return Euler(at["rotation_euler"].tolist(), mode)
 
 
 def _values(
@@ -78,5 +70,5 @@ def _values(
     for index in range(values.shape[1]):
         curve = curves.fcurves.find(path, index=index)
         if curve is not None and not curve.mute:
-            values[:, index] = [curve.evaluate(frame) for frame in frames]
+            values[:, index] = fcurves.values_at(curve, frames)
     return values

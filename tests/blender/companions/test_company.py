@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,8 +12,11 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.poses import Poses, sample
+from hangtime.bridge.exports.export import export_takes
+from hangtime.bridge.files.reimport import reimport
+from hangtime.bridge.recipe.export import ExportOptions
 from hangtime.bridge.recipe.result import ResultOptions
-from hangtime.bridge.rows.choices import After
+from hangtime.bridge.rows.choices import After, Engine, RootMotion
 from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.span import WrittenTake
 from hangtime.bridge.takes.write_result import write_result
@@ -256,3 +260,25 @@ def test_it_is_told_in_words_and_in_the_report() -> None:
     assert (record["root_along"], record["bones_kept_on_body"]) == ("root", ON)
     _, plain = written(take(root="still", baked=False), AHEAD)
     assert not [line for line in take_lines(plain) if "goes along" in line or "Kept" in line]
+
+
+def test_a_file_for_an_engine_has_the_root_under_the_hips_and_helpers_on_the_body(
+    tmp_path: Path,
+) -> None:
+    armature = take()
+    was = sample(armature, FRAMES)
+    now, _ = written(armature, AHEAD)
+    path, options = tmp_path / "jump.fbx", ExportOptions(Engine.UNREAL, root=RootMotion.AS_IT_IS)
+    export_takes(armature, [armature.animation_data.action], path, options, "hips")
+    again = reimport(path, FRAMES, begins=FRAMES[0])
+    place = {
+        bone: again.heads[:, again.index(bone)] for bone in ("hips", "root", *ON, *ON.values())
+    }
+    for bone in place:
+        np.testing.assert_allclose(place[bone], at(now, bone)[:, :3, 3], atol=1e-4)
+    for bone, body in ON.items():
+        np.testing.assert_allclose(place[bone], place[body], atol=1e-4)
+    before = at(was, "hips")[:, :2, 3] - at(was, "root")[:, :2, 3]
+    np.testing.assert_allclose((place["hips"] - place["root"])[:, :2], before, atol=1e-4)
+    travelled = place["root"][-1] - place["root"][0]
+    np.testing.assert_allclose(travelled, [0.0, -1.9, 0.0], atol=1e-3)
