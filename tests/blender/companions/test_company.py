@@ -11,16 +11,25 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature import fcurves
+from hangtime.bridge.armature.actions import showing_action
+from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.poses import Poses, sample
 from hangtime.bridge.exports.export import export_takes
 from hangtime.bridge.files.reimport import reimport
+from hangtime.bridge.polish.renewal import Renewal
 from hangtime.bridge.recipe.export import ExportOptions
 from hangtime.bridge.recipe.result import ResultOptions
-from hangtime.bridge.rows.choices import After, Engine, RootMotion
+from hangtime.bridge.rows.choices import After, Engine, RootMotion, WrittenAs
 from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.span import WrittenTake
-from hangtime.bridge.takes.write_result import write_result
+from hangtime.bridge.takes.takes import note_made
+from hangtime.bridge.takes.write_result import (
+    combine,
+    write_adapted_incrementally,
+    write_result,
+)
 from hangtime.operators.words.take_text import take_lines, take_record
+from hangtime.solver.data.contacts import ContactSchedule
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap
 from hangtime.solver.data.stance_move import StanceMove
@@ -282,3 +291,55 @@ def test_a_file_for_an_engine_has_the_root_under_the_hips_and_helpers_on_the_bod
     np.testing.assert_allclose((place["hips"] - place["root"])[:, :2], before, atol=1e-4)
     travelled = place["root"][-1] - place["root"][0]
     np.testing.assert_allclose(travelled, [0.0, -1.9, 0.0], atol=1e-3)
+
+
+def renewed(armature: bpy.types.Object, move: StanceMove, **options: object) -> bpy.types.Action:
+    """A result with the polish of the one before it, as it is made in a session."""
+    motion, renewal = moved(armature, move, **options), Renewal.of(armature)
+    action, made = complete(write_adapted_incrementally(armature, motion))
+    assert made is not None
+    no_contacts = ContactSchedule((), 1.0, 0.0)
+    bones = rigs.MOVING, made.companions.bones
+    complete(renewal.put_on(action, *bones, made.time, no_contacts, 24.0))
+    if motion.options.written_as is WrittenAs.COMBINE:
+        combine(armature, action, motion.options.after)
+    note_made(armature, action, made.span, made.time.later)
+    renewal.note(action, made.time, (float(FIRST), float(LAST)))
+    return action
+
+
+@pytest.mark.usefixtures("_enabled")
+def test_polish_of_a_helper_bone_is_put_on_where_it_is_now() -> None:
+    armature = take()
+    bpy.context.scene.hangtime.armature = armature
+    recording = armature.animation_data.action
+    was = sample(armature, FRAMES)
+    renewed(armature, AHEAD)
+    helper = armature.pose.bones["ik_foot"]
+    for frame in range(25, 31):
+        bpy.context.scene.frame_set(frame)
+        helper.location.x += 0.1
+        helper.keyframe_insert("location", frame=frame)
+    with showing_action(armature, recording):
+        further = moved(armature, replace(AHEAD, shift=(0.0, -0.8, 0.0)))
+    assert further.moved is not None
+    renewed(armature, further.moved)
+    now = sample(armature, FRAMES)
+    apart = (beside(now, "ik_foot", "foot") - beside(was, "ik_foot", "foot"))[:, :3, 3]
+    off = np.linalg.norm(apart, axis=1)
+    np.testing.assert_allclose(off[24:30], 0.1, atol=1e-4)
+    assert max(off[:23].max(), off[31:].max()) < 1e-4
+
+
+@pytest.mark.usefixtures("_enabled")
+def test_a_difference_on_the_take_has_them_too() -> None:
+    armature = take()
+    bpy.context.scene.hangtime.armature = armature
+    was = sample(armature, FRAMES)
+    renewed(armature, AHEAD, written_as=WrittenAs.COMBINE)
+    now = sample(armature, FRAMES)
+    assert np.abs(at(now, "foot") - at(was, "foot")).max() > 0.3
+    for bone, body in ON.items():
+        np.testing.assert_allclose(beside(now, bone, body), beside(was, bone, body), atol=2e-3)
+    apart, before = (at(p, "hips")[:, :2, 3] - at(p, "root")[:, :2, 3] for p in (now, was))
+    np.testing.assert_allclose(apart, before, atol=1e-4)
