@@ -66,13 +66,13 @@ def found_companions(
     world = poses.object_to_world[:, None] @ poses.matrices
     world[..., :3, 3] *= metres_per_unit(current_scene())
     places = {name: world[:, poses.bones.index(name), :3, 3] for name in (*names, bodies[0])}
-    above = _above(armature, bodies[:1])
-    roots = [name for name in names if name in above]
+    over_pelvis, over_any = _above(armature, bodies[:1]), _above(armature, bodies)
+    roots = [name for name in names if name in over_pelvis]
     root = next((name for name in roots if _travels(places[name], places[bodies[0]])), None)
     followers = [
         (name, body)
         for name in names
-        if name not in _above(armature, bodies) and _extent(places[name]) > _MOVES
+        if name not in over_any and _extent(places[name]) > _MOVES
         for body in _followed(armature, poses, name, bodies)
     ]
     return Companions(root, tuple(followers))
@@ -143,6 +143,8 @@ def _followed(
     equal ones; none where it keeps no place. What hangs on a bone follows it anyway."""
     hangs_on = _above(armature, (name,))
     own = poses.matrices[:, poses.bones.index(name)]
+    if not np.linalg.det(own[:, :3, :3]).all():  # hidden by its scale, which nothing undoes
+        return []
     found = []
     for body in (each for each in bodies if each not in hangs_on):
         matrices = poses.matrices[:, poses.bones.index(body)]

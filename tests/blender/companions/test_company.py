@@ -218,6 +218,16 @@ def test_bones_that_do_not_follow_or_follow_by_a_constraint_keep_their_keys() ->
     assert np.abs(at(now, "ik_foot") - at(now, "foot"))[:, :3, 3].max() < 1e-5
 
 
+def test_a_helper_that_is_hidden_by_its_scale_keeps_its_keys() -> None:
+    armature = take()
+    helper = armature.pose.bones["ik_gun"]
+    helper.scale = (0.0, 0.0, 0.0)
+    helper.keyframe_insert("scale", frame=1)
+    _, made = written(armature, AHEAD)
+    assert made is not None
+    assert [bone for bone, _ in made.companions.followers] == ["ik_foot"]
+
+
 def keys(armature: bpy.types.Object) -> dict[tuple[str, int], np.ndarray]:
     """Frames and values of every key, by channel."""
     return {(c.data_path, c.array_index): fcurves.keys(c) for c in fcurves.curves_of(armature)}
