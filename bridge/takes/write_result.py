@@ -192,6 +192,8 @@ def _state_range(action: bpy.types.Action, motion: AdaptedMotion, *, alone: bool
         action.use_cyclic = False
     start, end = (first, last) if alone else (min(ends[0], first), max(ends[1], last))
     action.frame_start, action.frame_end = start, end
+
+
 def _has_company(
     armature: bpy.types.Object, take: bpy.types.Action, slot: str | None, bones: tuple[str, ...]
 ) -> bool:
