@@ -21,6 +21,7 @@ from ..armature.incremental import Incremental, sample_incrementally
 from ..armature.pose_basis import carrier_of
 from ..armature.poses import Poses, metres_per_unit
 from ..controls.driven import constrained
+from .moves import is_hidden
 
 _LOOKS = 150  # frames at most at which a take is looked at, spread evenly
 _KEYED = 0.001  # m, by which keys of a bone move it at least
@@ -143,11 +144,11 @@ def _followed(
     equal ones; none where it keeps no place. What hangs on a bone follows it anyway."""
     hangs_on = _above(armature, (name,))
     own = poses.matrices[:, poses.bones.index(name)]
-    if not np.linalg.det(own[:, :3, :3]).all():  # hidden by its scale, which nothing undoes
-        return []
     found = []
     for body in (each for each in bodies if each not in hangs_on):
         matrices = poses.matrices[:, poses.bones.index(body)]
+        if is_hidden(own, matrices):
+            continue
         unit = metres_per_unit(current_scene()) * _size(poses.object_to_world[0] @ matrices[0])
         beside = np.linalg.solve(matrices, own)
         places, turns = unit * beside[:, :3, 3], proper(beside[:, :3, :3]).reshape(-1, 9)

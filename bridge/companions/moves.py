@@ -43,16 +43,25 @@ def root_basis(
 def following_bases(
     armature: bpy.types.Object, followers: Iterable[tuple[str, str]], was: Poses, now: Poses
 ) -> dict[str, FloatArray]:
-    """(T, 4, 4) bases by follower with which each is on its bone as it was, parents first.
+    """(T, 4, 4) bases by follower with which each is on its bone as it was, parents first; of none
+    that a scale of 0 hides, or what it follows or hangs on.
 
     was: poses of the take; now: of the result, in which followers are not yet there.
     """
     placed: dict[str, FloatArray] = {}
     found: dict[str, FloatArray] = {}
     for name, body in followers:
+        parent = _parent(armature, name, now, placed)
+        if is_hidden(_of(was, body), _of(was, name), *(() if parent is None else (parent,))):
+            continue
         placed[name] = _of(now, body) @ np.linalg.inv(_of(was, body)) @ _of(was, name)
-        found[name] = _basis(armature, name, _parent(armature, name, now, placed), placed[name])
+        found[name] = _basis(armature, name, parent, placed[name])
     return found
+
+
+def is_hidden(*poses: FloatArray) -> bool:
+    """Whether a scale of 0, which nothing undoes, is in any of transformations (T, 4, 4)."""
+    return not all(np.linalg.det(each[:, :3, :3]).all() for each in poses)
 
 
 def differs(armature: bpy.types.Object, poses: Poses, name: str, basis: FloatArray) -> bool:
@@ -77,7 +86,7 @@ def _parent(
         return None
     parent = _of(poses, bone.parent.name)
     for above in bone.parent_recursive:
-        if above.name in placed:
+        if above.name in placed and not is_hidden(_of(poses, above.name)):
             return np.asarray(placed[above.name] @ np.linalg.inv(_of(poses, above.name)) @ parent)
     return parent
 

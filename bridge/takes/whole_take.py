@@ -130,7 +130,7 @@ def write_take(
     alone = None
     if motion.options.others_stay:
         above = holders_of(armature, company, bones)
-        alone = {channel.path for channel in every} | _paths_of(curves, above)
+        alone = {channel.path for channel in every} | _paths_of(curves, {*company.bones, *above})
     yield from _retime(action, curves, alone, plan.time)
     with showing():
         rests = {channel: channel.at_rest(armature) for channel in every}
@@ -242,7 +242,7 @@ def _follow(
     if later is not None and was[1] is not None:  # where the figure is moved as one
         riding = [(name, pelvis) for name, _ in company.followers]
         for name, basis in following_bases(copy.armature, riding, was[1], later).items():
-            if differs(copy.armature, later, name, basis):
+            if name in bases and differs(copy.armature, later, name, basis):
                 bases[name] = np.concatenate([bases[name], basis])
                 left.add(name)
     for channel in (each for each in rests if each.bone in left):

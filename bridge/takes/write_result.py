@@ -24,7 +24,7 @@ from ..properties.settings import settings_of
 from ..rows.choices import After, WrittenAs
 from .difference import difference_of
 from .plan import AdaptedMotion
-from .span import WrittenTake
+from .span import ResultSpan, WrittenTake
 from .takes import derive, free_name, root_of
 from .whole_take import write_take
 
@@ -160,7 +160,7 @@ def _write(
             showing=showing,
         )
         forget_copied(cut)
-        _state_range(cut, motion, alone=True)
+        _state_range(cut, motion, None)
         note_take(armature, cut, recorded)
         return cut, None
     action = scene_copy(armature, recorded, name)
@@ -171,8 +171,8 @@ def _write(
         if cut_off:
             for curve in all_curves(action):
                 fcurves.crop(curve, float(motion.track.frames[0]), float(motion.track.frames[-1]))
-            written = replace(written, blends=())  # which are left out
-        _state_range(action, motion, alone=cut_off)
+            written = _alone(written)
+        _state_range(action, motion, None if cut_off else written)
         whole = True
     finally:
         if not whole:  # cancelled in between: half an action is of no use to anybody
@@ -181,16 +181,29 @@ def _write(
     return action, written
 
 
-def _state_range(action: bpy.types.Action, motion: AdaptedMotion, *, alone: bool) -> None:
-    """Has a copy's manual frame range, which exports go by, hold the adapted frames; alone: these
-    only. A cycle whose ends are among them is none any more."""
+def _alone(written: WrittenTake) -> WrittenTake:
+    """What is left of what was done to a take where its adapted frames are cut out of it."""
+    first, last = written.span.first, written.span.last
+    span = ResultSpan(first, last, first, last, 0.0, 0.0)
+    return replace(written, span=span, moved=None, back=None, slide=0.0, blends=())
+
+
+def _state_range(
+    action: bpy.types.Action, motion: AdaptedMotion, written: WrittenTake | None
+) -> None:
+    """Has a copy's manual frame range, which exports go by, hold the adapted frames; these only
+    where nothing is written of the take. A cycle whose ends change is none any more."""
     if not action.use_frame_range:
         return
     first, last = motion.track.frames[[0, -1]].tolist()
-    ends = action.frame_start, action.frame_end
-    if alone or first <= ends[0] or last >= ends[1]:
-        action.use_cyclic = False
-    start, end = (first, last) if alone else (min(ends[0], first), max(ends[1], last))
+    start, end = action.frame_start, action.frame_end
+    if written is None:
+        start, end, action.use_cyclic = first, last, False
+    else:
+        left, right = written.span.between
+        if left < start or right > end or (written.moved is not None and written.back is None):
+            action.use_cyclic = False
+        start, end = min(start, first), max(end, last)
     action.frame_start, action.frame_end = start, end
 
 

@@ -32,6 +32,7 @@ if TYPE_CHECKING:  # as in clip.py
 
     from ...bridge.controls.control_rig import ControlRig
     from ...bridge.controls.kept import KeptByControls
+    from ...bridge.properties.of_actions.known_contacts import SolvedContacts
     from ...bridge.takes.plan import AdaptedMotion
     from ...bridge.takes.span import WrittenTake
     from ...solver.data.contacts import ContactSchedule
@@ -234,6 +235,7 @@ class Outputs:
         from ...bridge.armature.write import side_by_side, write_action
         from ...bridge.files.reproportioned import build_reproportioned, in_new_axes
         from ...bridge.loops.write_loop import Loop, write_loop
+        from ...bridge.properties.of_actions.known_contacts import keep_contacts
         from ...bridge.takes.take_time import TakeTime
         from ...bridge.takes.write_result import write_result
 
@@ -251,27 +253,26 @@ class Outputs:
             loop = Loop.of(armature, track, self.loop.root)
             slot = slot_identifier(armature)
             adapted, written = complete(write_loop(armature, loop, recorded, slot, name=name))
-            self._keep_contacts(recorded, adapted, 0)
+            keep_contacts(adapted, self._solved_contacts())
             side_by_side(armature, recorded, adapted, offset=self._beside())
         else:
             motion = self._motion()
             adapted, take = write_result(armature, motion, name=name)
-            written, time = take, TakeTime.of(motion.times, 1.0) if take is None else take.time
-            self._keep_contacts(recorded, adapted, time.later)
+            time = TakeTime.of(motion.times, 1.0) if take is None else take.time
+            known = self.result.subject.recording.known
+            keep_contacts(adapted, self._solved_contacts(), known, time.later)
+            written = take
             side_by_side(armature, recorded, adapted, offset=self._beside())
         first, last = adapted.frame_range.to_tuple()
         _show_frames(round(first), round(last), alone=not self.clip.in_scene)
         return _Written(armature, adapted, schedule, written)
 
-    def _keep_contacts(
-        self, recorded: bpy.types.Action, adapted: bpy.types.Action, later: int
-    ) -> None:
-        """Keep with a result the contacts that it was solved with. later: as of `store_known`."""
-        from ...bridge.properties.of_actions.known_contacts import known_in, store_known
+    def _solved_contacts(self) -> SolvedContacts:
+        from ...bridge.properties.of_actions.known_contacts import SolvedContacts
 
-        moving = {thing.name for thing in self.result.subject.problem.scene if thing.moves}
-        first, rate = float(self.result.track.frames[0]), self.result.recording.rate
-        store_known(adapted, known_in(self.result.schedule, first, rate, moving), recorded, later)
+        made = self.result
+        scene, rate = made.subject.problem.scene, made.recording.rate
+        return SolvedContacts(made.schedule, made.track.frames, rate, scene)
 
     def _mark_contacts(self, performer: bpy.types.Object, adapted: bpy.types.Action) -> None:
         """By markers and channels, as is asked for."""

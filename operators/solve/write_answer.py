@@ -25,7 +25,7 @@ from ...bridge.loops.write_loop import (
 )
 from ...bridge.polish.pins import MovedPin
 from ...bridge.polish.renewal import Renewal
-from ...bridge.properties.of_actions.known_contacts import known_in, store_known
+from ...bridge.properties.of_actions.known_contacts import SolvedContacts, keep_contacts
 from ...bridge.properties.of_actions.shown_overlaps import store_overlaps
 from ...bridge.properties.of_actions.shown_times import store_times
 from ...bridge.properties.settings import action_settings, settings_of
@@ -131,7 +131,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         if loop.travels:
             complete(_tell_missed(armature, armature, action, answer))
         mark_contacts(armature, action, answer, options)
-        _keep_contacts(asked, action, answer, 0)
+        keep_contacts(action, _solved_contacts(asked, answer))
         note_made(armature, action, None, 0)
         return f"Wrote the loop {action.name}"
     renewal = Renewal.of(armature)
@@ -154,7 +154,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     times = answer.report.times
     time = written.time if written is not None else TakeTime.of(times, 1.0)
     span = written.span if written is not None else None
-    _keep_contacts(asked, action, answer, time.later)
+    keep_contacts(action, _solved_contacts(asked, answer), asked.recording.known, time.later)
     finishing = _finish(armature, action, answer, options, renewal, span, time)
     try:
         yield from _tell_missed(armature, armature, action, answer)
@@ -196,12 +196,9 @@ def _finish(
     renewal.note(action, time, (frames[0], frames[-1]))
 
 
-def _keep_contacts(asked: Asked, action: bpy.types.Action, answer: Adapted, later: int) -> None:
-    """Keeps with a result the contacts that it was solved with."""
-    moving = {thing.name for thing in asked.problem.scene if thing.moves}
-    first, rate = float(answer.track.frames[0]), answer.report.recording.frames_per_second
-    own = known_in(answer.schedule, first, rate, moving)
-    store_known(action, own, source_of(action), later)
+def _solved_contacts(asked: Asked, answer: Adapted) -> SolvedContacts:
+    rate = answer.report.recording.frames_per_second
+    return SolvedContacts(answer.schedule, answer.track.frames, rate, asked.problem.scene)
 
 
 def _tell_aimed(asked: Asked, armature: bpy.types.Object, track: PoseTrack) -> None:

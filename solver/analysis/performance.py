@@ -12,7 +12,14 @@ from ..body.character import Character, body_rotations
 from ..body.kinematics import BodyPoint
 from ..contacts.contact_detection import detect_contacts
 from ..contacts.known_contacts import Clock, with_known
-from ..data.contacts import ContactPoint, ContactSchedule, PointKind, numbered, snap
+from ..data.contacts import (
+    ContactPoint,
+    ContactSchedule,
+    Interval,
+    PointKind,
+    numbered,
+    snap,
+)
 from ..data.recording import Recording, Skin
 from ..data.scene import SceneObject
 from ..numerics.interpolation import interpolate
@@ -101,17 +108,19 @@ def find_contacts(performance: Performance, scene: Sequence[SceneObject] = ()) -
         heights = ground.heights
         detect = partial(detect, carriers=ground.carriers)
         schedule = ground.named(detect(ground=heights))
+    falls: tuple[Interval, ...] = ()
     boxes = [b for gap in schedule.unseen for b in boxes_beneath(take.times, points, gap, floor_m)]
     if boxes:  # they would tell when the feet leave them, and so where the body flies
         flights = detect(ground=on_boxes(boxes, heights)).flights
         falls = clear_falls(take.times, take.com, flights)
         unseen = (piece for gap in schedule.unseen for piece in without_falls(gap, falls))
         schedule = replace(schedule, unseen=tuple(unseen))
-    if take.recording.known:
+    first, last = take.recording.ends
+    if known := [each for each in take.recording.known if each.first < last and each.last > first]:
         clock = Clock(take.recording.frames, take.times)
-        known = with_known(schedule.contacts, take.recording.known, clock, points, duration)
-        carried = unseen_support(known, duration, take.times, take.com)
-        schedule = ground.named(replace(schedule, contacts=numbered(known), unseen=carried))
+        contacts = with_known(schedule.contacts, known, clock, points, duration)
+        carried = unseen_support(contacts, duration, take.times, take.com, falls=falls)
+        schedule = ground.named(replace(schedule, contacts=numbered(contacts), unseen=carried))
     return snap(schedule, snap_tolerance(performance))
 
 

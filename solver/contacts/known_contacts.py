@@ -5,15 +5,16 @@ recorded hits the floor, and is pulled off it, but a solved one comes to rest an
 as the laws of motion let it.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..arrays import FloatArray
-from ..data.contacts import Contact, ContactPoint, Interval, KnownContacts
+from ..data.contacts import Contact, ContactPoint, Interval, KnownContacts, gaps
 
 MAX_STRAY = 0.03  # m, from its place; a sole rises by less before its force ends
+MAX_LONGER = 0.1  # s, by which a solved contact is found too long at an end; 0.07 on a run
 ROUNDING = 1e-6  # s
 
 
@@ -44,16 +45,36 @@ def with_known(
     """The contacts found, but in frames in which all are known these.
 
     points: by name, with tracks by the clock. duration: s, from 0, of what is looked at. Frames
-    that were changed since, so that a point does not keep its place, are as they were found.
+    that were changed since, so that this is not so any more, are as they were found.
     """
     contacts = list(found)
     for each in known:
         first, last = clock.seconds(each.first), clock.seconds(each.last)
         within = Interval(max(first, 0.0), min(last, duration))
         told = list(_of_points(each, clock, points))
-        if within.start < within.end and all(_stays(c, clock, points) for c in told):
+        if within.start < within.end and _holds(told, contacts, within, clock, points):
             contacts = _spliced(contacts, told, within)
     return contacts
+
+
+def _holds(
+    told: Sequence[Contact],
+    found: Iterable[Contact],
+    within: Interval,
+    clock: Clock,
+    points: Mapping[str, ContactPoint],
+) -> bool:
+    """Whether what is told of an interval is still so: its points keep their places, and none of
+    them touches for longer at once than thresholds err by while it is told to be up."""
+    if not all(_stays(contact, clock, points) for contact in told):
+        return False
+    for contact in (_cut(each, within.start, within.end) for each in found):
+        own = [_cut(c, contact.start, contact.end) for c in told if c.point == contact.point]
+        touched = ((c.start - contact.start, c.end - contact.start) for c in own)
+        up = gaps((t for t in touched if t[0] < t[1]), contact.end - contact.start)
+        if any(gap.end - gap.start > MAX_LONGER for gap in up):
+            return False
+    return True
 
 
 def _of_points(

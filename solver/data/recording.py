@@ -132,8 +132,9 @@ class PoseTrack:
 
 
 def digest(recording: Recording, grid: float = 0.0) -> str:
-    """SHA-256, hexadecimal, of name, bones, rest pose, frames, times and poses. grid: to which
-    these are rounded, 0 not at all: their last bits are the processor's."""
+    """SHA-256, hexadecimal, of name, bones, rest pose, frames, times and poses; and of contacts
+    that are known, and bones that follow others, where there are any. grid: to which poses are
+    rounded, 0 not at all: their last bits are the processor's."""
 
     def content_of(values: FloatArray) -> bytes:
         return (np.round(values / grid) + 0.0 if grid else values).tobytes()  # no -0.0
@@ -145,6 +146,9 @@ def digest(recording: Recording, grid: float = 0.0) -> str:
             content.update(content_of(rest))
     for samples in (recording.frames, recording.times, recording.heads, recording.rotations):
         content.update(content_of(samples))
+    following = {bone.name: bone.follows for bone in recording.bones if bone.follows}
+    if recording.known or following:
+        content.update(repr((recording.known, following)).encode())
     return content.hexdigest()
 
 

@@ -33,7 +33,7 @@ SIDE_WORDS: Mapping[Side, tuple[str, ...]] = {
 }
 HEAD_WORDS = (
     *("head", "kopf", "tete", "tête", "cabeza", "cabeça", "testa"),
-    *("atama", "頭", "头", "머리", "голов"),
+    *("atama", "頭", "頭部", "头", "头部", "머리", "голова"),
 )
 
 
@@ -68,7 +68,7 @@ def names_head(name: str) -> bool:
     """Whether a name calls a bone the head in any of the languages: by one word alone, for there
     are hats and hair of the head, too."""
     words = _words(name)
-    return len(words) == 1 and words[0].startswith(HEAD_WORDS)
+    return len(words) == 1 and words[0] in HEAD_WORDS
 
 
 def _words(name: str) -> list[str]:

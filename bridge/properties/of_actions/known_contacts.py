@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Collection
-from dataclasses import astuple
+from dataclasses import astuple, dataclass
 from typing import Any
 
 import bpy
 import numpy as np
 
+from ....solver.arrays import FloatArray
 from ....solver.data.contacts import ContactSchedule, KnownContacts
+from ....solver.data.scene import SceneObject
 from ...accessors import ATTRIBUTE
 from ...hidden_texts import HiddenText, listed, number, word
 from ...played_strips import StripTime
@@ -19,26 +20,37 @@ from ..settings import action_settings
 Known = tuple[KnownContacts, ...]
 
 
-def known_in(
-    schedule: ContactSchedule, first: float, rate: float, moving: Collection[str]
-) -> Known:
-    """The contacts of a motion from a scene frame on, at frames a second; nothing where some are on
-    what moves, since points do not keep their places then. moving: names of such objects."""
-    if any(contact.on in moving for contact in schedule.contacts):
-        return ()
-    contacts = ((c.point, first + c.start * rate, first + c.end * rate) for c in schedule.contacts)
-    return (KnownContacts(first, first + schedule.duration * rate, tuple(contacts)),)
+@dataclass(frozen=True)
+class SolvedContacts:
+    """What a motion touches. frames: (T,) its scene frames, `rate` a second. scene: its own."""
+
+    schedule: ContactSchedule
+    frames: FloatArray
+    rate: float
+    scene: tuple[SceneObject, ...]
+
+    @property
+    def known(self) -> Known:
+        """None where some are on what moves: points do not keep their places then."""
+        moving = {thing.name for thing in self.scene if thing.moves}
+        if any(contact.on in moving for contact in self.schedule.contacts):
+            return ()
+        first = float(self.frames[0])
+        last = first + self.schedule.duration * self.rate
+        contacts = (
+            (c.point, first + c.start * self.rate, first + c.end * self.rate)
+            for c in self.schedule.contacts
+        )
+        return (KnownContacts(first, last, tuple(contacts)),)
 
 
-def store_known(
-    action: bpy.types.Action, own: Known, source: bpy.types.Action | None, later: float
+def keep_contacts(
+    action: bpy.types.Action, solved: SolvedContacts, before: Known = (), later: float = 0.0
 ) -> None:
-    """Keeps with a result its own contacts, and its source's beside them. later: frames by which
-    what follows is."""
-    before = known_contacts(source) if source is not None else ()
-    first = min((each.first for each in own), default=np.inf)
-    last = max((each.last for each in own), default=first)
-    every = [*(_cut(each, -np.inf, first) for each in before), *own]
+    """Keeps with a result its contacts, and beside them those known before in the frames of what it
+    was made from. later: frames by which what follows is."""
+    first, last = solved.frames[[0, -1]].tolist()
+    every = [*(_cut(each, -np.inf, first) for each in before), *solved.known]
     every += [_cut(_mapped(each, later), last, np.inf) for each in before]
     some = [astuple(each) for each in every if each.first < each.last]
     action_settings(action).known_contacts = json.dumps(some)

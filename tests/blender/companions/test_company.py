@@ -228,6 +228,16 @@ def test_a_helper_that_is_hidden_by_its_scale_keeps_its_keys() -> None:
     assert [bone for bone, _ in made.companions.followers] == ["ik_foot"]
 
 
+def test_a_bone_of_the_body_that_its_scale_hides_is_followed_by_none() -> None:
+    armature = take()
+    head = armature.pose.bones["head"]
+    head.scale = (0.0, 0.0, 0.0)
+    head.keyframe_insert("scale", frame=1)
+    _, made = written(armature, AHEAD)
+    assert made is not None
+    assert "ik_foot" in [bone for bone, _ in made.companions.followers]
+
+
 def keys(armature: bpy.types.Object) -> dict[tuple[str, int], np.ndarray]:
     """Frames and values of every key, by channel."""
     return {(c.data_path, c.array_index): fcurves.keys(c) for c in fcurves.curves_of(armature)}
@@ -264,6 +274,17 @@ def test_they_go_with_the_body_where_durations_change(alone: bool) -> None:
     assert np.abs(apart[:, :3, 3]).max() < 5e-3  # of keys between frames, a chord
     hips, root = at(now, "hips")[:, :2, 3], at(now, "root")[:, :2, 3]
     assert np.abs(hips - root).max() < 0.5
+
+
+def test_of_a_cut_take_nothing_is_told_of_the_rest() -> None:
+    armature = take()
+    _, made = written(armature, AHEAD, after=After.CUT)
+    assert made is not None
+    told = "\n".join(take_lines(made))
+    assert f"Take: frames {FIRST} to {LAST} are adapted" in told
+    assert "Blended" not in told
+    assert "What follows" not in told
+    assert take_record(made)["take_frames"] == [FIRST, LAST]
 
 
 def test_it_is_told_in_words_and_in_the_report() -> None:

@@ -461,6 +461,7 @@ def test_cut_leaves_the_adapted_frames_alone() -> None:
     [
         ((1.0, LENGTH), After.CARRY, True, (1.0, LENGTH)),
         ((FIRST, LAST - 5.0), After.CARRY, False, (FIRST, LAST)),
+        ((1.0, LAST + BLEND - 2.0), After.CARRY, False, (1.0, LAST + BLEND - 2.0)),
         ((1.0, LENGTH), After.CUT, False, (FIRST, LAST)),
     ],
 )

@@ -37,8 +37,8 @@ def known(first: float, last: float, *contacts: tuple[float, float]) -> KnownCon
 
 
 def test_what_is_known_counts_instead_of_what_is_found() -> None:
-    assert spans([contact(0.1, 0.9)], known(1, 201, (21, 71))) == [(0.2, 0.7)]
-    assert spans([contact(0.1, 0.9)], known(1, 201)) == []
+    assert spans([contact(0.15, 0.75)], known(1, 201, (21, 71))) == [(0.2, 0.7)]
+    assert spans([contact(0.15, 0.2)], known(1, 201)) == []
 
 
 def test_what_is_found_counts_beside_the_known_frames() -> None:
@@ -47,19 +47,26 @@ def test_what_is_found_counts_beside_the_known_frames() -> None:
 
 
 def test_a_contact_that_the_known_frames_cut_off_goes_on() -> None:
-    assert spans([contact(0.1, 0.9)], known(51, 151, (51, 81))) == [(0.1, 0.8)]
-    assert spans([contact(0.8, 1.8)], known(51, 151, (111, 151))) == [(1.1, 1.8)]
+    assert spans([contact(0.1, 0.85)], known(51, 151, (51, 81))) == [(0.1, 0.8)]
+    assert spans([contact(1.05, 1.8)], known(51, 151, (111, 151))) == [(1.1, 1.8)]
 
 
 @pytest.mark.parametrize(("wanders", "counts"), [(0.02, True), (0.05, False)])
 def test_frames_that_were_edited_since_are_looked_at(wanders: float, counts: bool) -> None:
-    told = spans([contact(0.1, 0.9)], known(1, 201, (21, 71)), wanders=wanders)
-    assert told == [(0.2, 0.7) if counts else (0.1, 0.9)]
+    told = spans([contact(0.15, 0.75)], known(1, 201, (21, 71)), wanders=wanders)
+    assert told == [(0.2, 0.7) if counts else (0.15, 0.75)]
+
+
+@pytest.mark.parametrize(("end", "counts"), [(0.75, True), (0.95, False)])
+def test_a_stance_that_was_made_longer_since_is_looked_at(end: float, counts: bool) -> None:
+    told = spans([contact(0.2, end)], known(1, 201, (21, 71)))
+    assert told == [(0.2, 0.7) if counts else (0.2, end)]
+    assert spans([contact(0.2, end)], known(1, 201)) == [(0.2, end)]  # where a hop was taken out
 
 
 def test_a_point_that_is_not_looked_at_is_left_out() -> None:
     other = KnownContacts(1, 201, (("Left knee", 1.0, 50.0),))
-    assert with_known([contact(0.1, 0.9)], [other], CLOCK, point(), 2.0) == []
+    assert with_known([contact(0.1, 0.15)], [other], CLOCK, point(), 2.0) == []
 
 
 def test_a_mirrored_recording_has_them_on_the_other_side() -> None:

@@ -13,7 +13,7 @@ from hangtime.operators.words.analysis_text import starter_recipe
 from hangtime.solver.analysis.analyse import Analysis, analyse
 from hangtime.solver.analysis.grounding import PLACE_BAND
 from hangtime.solver.arrays import FloatArray
-from hangtime.solver.data.contacts import PhaseKind
+from hangtime.solver.data.contacts import KnownContacts, PhaseKind
 from hangtime.solver.data.faults import UnseenSupport
 from hangtime.solver.data.problem import ContactEdit, MotionProblem, Unseen
 from hangtime.solver.data.recording import Recording
@@ -257,3 +257,12 @@ def test_a_worker_looks_again_where_what_was_stood_on_is_another() -> None:
     scenes = ((), (box,), (box, aside), (aside,))
     assert [explained(*scene) for scene in scenes] == [False, True, True, False]
     assert not explained(replace(box, positions=box.positions - [0.0, 0.0, 0.1]))
+
+
+def test_what_is_known_of_other_frames_leaves_a_drop_a_flight() -> None:
+    there = replace(drop(), known=(KnownContacts(-500.0, -400.0, ()),))
+    was, now = (measure(each, MotionProblem()).analysis.schedule for each in (drop(), there))
+    assert len(was.flights) == 1
+    assert now.flights == was.flights
+    whole = replace(drop(), known=(KnownContacts(-500.0, float(drop().frames[0]) + 1.0, ()),))
+    assert len(measure(whole, MotionProblem()).analysis.schedule.flights) == 1

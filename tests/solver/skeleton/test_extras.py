@@ -81,6 +81,6 @@ def test_a_head_is_called_so_in_many_languages(name: str) -> None:
     assert names_head(name)
 
 
-@pytest.mark.parametrize("name", ["Head_helmet", "HeadTop", "Hair1", "n2", "neck"])
+@pytest.mark.parametrize("name", ["Head_helmet", "HeadTop", "Headband", "Hair1", "n2", "neck"])
 def test_hats_and_hair_are_not(name: str) -> None:
     assert not names_head(name)
