@@ -16,7 +16,7 @@ from .names import split_side
 from .parts import Side
 
 OTHER = {"left": "right", "right": "left", "l": "r", "r": "l"}
-CAMEL = re.compile(r"[LR](?=[A-Z])")
+OTHER_LETTER = {"L": "R", "R": "L", "l": "r", "r": "l"}
 NEAR_AXIS = np.cos(np.radians(10.0))  # a rest pose that faces so near along an axis faces along it
 LEVEL = 0.3  # of the vector from one side to the other: less along the floor tells no direction
 
@@ -111,8 +111,8 @@ def _partners(bones: Sequence[Bone]) -> list[int]:
     index = {bone.name: i for i, bone in enumerate(bones)}
     found = [index.get(other_side(bone.name), -1) for bone in bones]
     for i, bone in enumerate(bones):
-        if found[i] == i and CAMEL.match(bone.name):  # "LHipJoint": a word that tells no part
-            found[i] = index.get(OTHER[bone.name[0].lower()].upper() + bone.name[1:], i)
+        if found[i] == i and bone.name[0] in OTHER_LETTER:  # "LHipJoint", "lthumb": of no part
+            found[i] = index.get(OTHER_LETTER[bone.name[0]] + bone.name[1:], i)
     for i, bone in enumerate(bones):
         above = found[bone.parent] if bone.parent >= 0 else -1
         if found[i] < 0 or bones[found[i]].parent != above:

@@ -71,6 +71,16 @@ def test_mirrored_twice_is_the_clip(hop: Recording) -> None:
             np.testing.assert_allclose(again.tail, bone.tail, atol=1e-12)
 
 
+def test_acclaims_names_have_partners_too(hop: Recording) -> None:
+    """CMU's .asf calls them "lhipjoint" and "lthumb", which tell no part of the body."""
+    low = {"LHipJoint": "lhipjoint", "RHipJoint": "rhipjoint", "LThumb": "lthumb"}
+    low |= {"RThumb": "rthumb"}
+    bones = tuple(replace(bone, name=low.get(bone.name, bone.name)) for bone in hop.bones)
+    assert {bone.name for bone in bones} >= {"lhipjoint", "rhipjoint"}
+    now = mirrored(replace(hop, bones=bones))
+    np.testing.assert_array_equal(now.heads, mirrored(hop).heads)
+
+
 def test_a_mirrored_figure_hangs_together_as_its_rest_does(hop: Recording) -> None:
     """Bones of the mirrored skeleton keep their lengths in every frame, and left is left."""
     other = mirrored(hop)
