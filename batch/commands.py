@@ -6,10 +6,11 @@ import argparse
 import signal
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from io import TextIOWrapper
+from itertools import islice
 from pathlib import Path
 
 from ..operators.headless.explained import CANCELLED, WRONG_INPUT, explained
@@ -30,6 +31,7 @@ from .running.workers import worker_command
 
 RUN = "run"
 MOST_TOLD = 20  # cells that are not done, by name, at the end
+MOST_SPOILT = 5  # cells whose files are missing, by name, at the start
 # What a batch ends with: the first of these that a cell of it has.
 WORST = (State.FAILED, State.WRONG_INPUT, State.NO_SOLUTION)
 
@@ -268,6 +270,8 @@ def _planned(options: argparse.Namespace) -> Planned:
     cells = planned.manifest.cells
     done = sum(_done(planned.manifest).values())
     print(counted(len(cells), "cell") + (f", {done} of them solved before" if done else "") + ".")
+    if planned.spoilt:
+        print(_told_spoilt(planned.spoilt))
     if planned.twice:
         print(f"Left out, as the same as others: {counted(planned.twice, 'pair')}.")
     if planned.strays:
@@ -276,6 +280,17 @@ def _planned(options: argparse.Namespace) -> Planned:
             f"{options.out / 'cells'}, such as {planned.strays[0]}."
         )
     return planned
+
+
+def _told_spoilt(spoilt: Mapping[str, tuple[str, ...]]) -> str:
+    """Cells whose results somebody has taken files of, in a line."""
+    named = [f"{cell} ({', '.join(files)})" for cell, files in islice(spoilt.items(), MOST_SPOILT)]
+    more = [f"and {len(spoilt) - len(named)} more"] if len(spoilt) > len(named) else []
+    many = len(spoilt) > 1
+    return (
+        f"{counted(len(spoilt), 'cell')} whose files are missing or changed "
+        f"{'are' if many else 'is'} solved again: {', '.join([*named, *more])}."
+    )
 
 
 def collect_batch(options: argparse.Namespace) -> int:

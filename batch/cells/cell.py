@@ -68,8 +68,8 @@ def _written(
         word: sum(s.seconds for s in stages.done if s.name == stage) for word, stage in told.items()
     }
     seconds["total"] = perf_counter() - began
-    files = tuple(sorted(path.name for path in aside.iterdir()))
-    result = _result(settings, plan, ended, seconds, files)
+    sizes = {path.name: path.stat().st_size for path in sorted(aside.iterdir())}
+    result = _result(settings, plan, ended, seconds, sizes)
     (aside / RESULT).write_text(result.as_json(), encoding="utf-8")
     return result
 
@@ -115,7 +115,7 @@ def _result(
     plan: CellPlan,
     ended: _Ended,
     seconds: dict[str, float],
-    files: tuple[str, ...],
+    sizes: dict[str, int],
 ) -> CellResult:
     return CellResult(
         cell=plan.cell,
@@ -128,5 +128,6 @@ def _result(
         seconds=seconds,
         figures=ended.done.figures,
         values=plan.values,
-        files=files,
+        files=tuple(sizes),
+        sizes=sizes,
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
@@ -19,7 +19,7 @@ from ..records.manifest import (
     read_manifest,
     write_manifest,
 )
-from ..records.result import CELLS, read_result
+from ..records.result import CELLS, State, read_result, spoilt_files
 from .clips import clip_sha256
 from .pairs import Pair, crossed, read_table
 from .recipes import VariedRecipe
@@ -41,11 +41,13 @@ class Asked:
 @dataclass(frozen=True)
 class Planned:
     """A plan that was written. twice: pairs that are the same as another, and done once. strays:
-    cells in the folder that are of an earlier plan and not of this one."""
+    cells in the folder that are of an earlier plan and not of this one. spoilt: names of files that
+    are missing or changed, by cells, which are to be solved again."""
 
     manifest: Manifest
     twice: int = 0
     strays: tuple[str, ...] = ()
+    spoilt: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 def plan(asked: Asked, folder: Path) -> Planned:
@@ -64,19 +66,35 @@ def plan(asked: Asked, folder: Path) -> Planned:
     unique = {cell.key(asked.settings): cell for cell in found}
     _refuse_another(folder, found)
     cells, strays = _named(unique, folder)
-    manifest = Manifest(asked.settings, refreshed(folder, cells))
+    cells, spoilt = _as_left(folder, cells)
+    manifest = Manifest(asked.settings, cells)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise gone(folder, error) from error
     write_manifest(folder, manifest)
-    return Planned(manifest, len(found) - len(unique), strays)
+    return Planned(manifest, len(found) - len(unique), strays, spoilt)
 
 
 def refreshed(folder: Path, cells: Sequence[CellPlan]) -> tuple[CellPlan, ...]:
     """The cells with the states that their results have."""
     results = ((cell, read_result(folder, cell.cell)) for cell in cells)
     return tuple(c if r is None else replace(c, state=r.state) for c, r in results)
+
+
+def _as_left(
+    folder: Path, cells: Sequence[CellPlan]
+) -> tuple[tuple[CellPlan, ...], dict[str, tuple[str, ...]]]:
+    """The cells with the states that their results have, but where files of a result are spoilt;
+    and these files, by cells."""
+    found, spoilt = [], {}
+    for cell in cells:
+        result = read_result(folder, cell.cell)
+        if result is not None and result.state is not State.FAILED:
+            spoilt[cell.cell] = spoilt_files(folder, cell.cell, result)
+        stays = result is not None and not spoilt.get(cell.cell)
+        found.append(replace(cell, state=result.state) if result and stays else cell)
+    return tuple(found), {cell: files for cell, files in spoilt.items() if files}
 
 
 # ---------------------------------------------------------------- the cells

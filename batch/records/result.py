@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
@@ -42,7 +43,7 @@ class CellResult:
     sentence: why it is not done, for people; empty where it is. headline: of the report. seconds:
     of "fit", "solve", "report" and "total". figures: numbers by names with their units. values:
     what the recipe's ranges were for it. clip, recipe: names of the files. files: what lies in the
-    folder beside result.json.
+    folder beside result.json; sizes: theirs, bytes, which older results do not tell.
     """
 
     cell: str
@@ -56,6 +57,7 @@ class CellResult:
     figures: Mapping[str, float] = field(default_factory=dict)
     values: Mapping[str, object] = field(default_factory=dict)
     files: tuple[str, ...] = ()
+    sizes: Mapping[str, int] = field(default_factory=dict)
 
     @property
     def exit_code(self) -> int:
@@ -102,9 +104,27 @@ def read_result(folder: Path, cell: str) -> CellResult | None:
 
 
 def lasting_result(folder: Path, cell: str) -> CellResult | None:
-    """The result of a cell that is not solved again: any but a failure. Raises FolderGone."""
+    """The result of a cell that is not solved again: any but a failure, or one whose files are not
+    as they were written. Raises FolderGone."""
     found = read_result(folder, cell)
-    return None if found is None or found.state is State.FAILED else found
+    if found is None or found.state is State.FAILED or spoilt_files(folder, cell, found):
+        return None
+    return found
+
+
+def spoilt_files(folder: Path, cell: str, result: CellResult) -> tuple[str, ...]:
+    """A result's files that are missing, or empty or of another size than they were written. Raises
+    FolderGone."""
+    path = cell_folder(folder, cell)
+    try:
+        with os.scandir(path) as entries:
+            found = {entry.name: entry.stat().st_size for entry in entries}
+    except FileNotFoundError:  # one that goes meanwhile
+        return result.files
+    except OSError as error:
+        raise gone(path, error) from error
+    whole = {name for name, size in found.items() if size == result.sizes.get(name, size or None)}
+    return tuple(name for name in result.files if name not in whole)
 
 
 @contextmanager

@@ -1,6 +1,7 @@
 """Results of cells that several processes bring at once."""
 
 import errno
+from dataclasses import replace
 from pathlib import Path
 from threading import Event, Thread
 
@@ -14,7 +15,9 @@ from hangtime.batch.records.result import (
     CellResult,
     State,
     cell_folder,
+    lasting_result,
     read_result,
+    spoilt_files,
     written_cell,
 )
 
@@ -103,6 +106,30 @@ def test_a_result_that_is_replaced_on_a_server_meanwhile_is_looked_at_again(
     stale.extend(OSError(errno.ESTALE, "Stale file handle") for _ in range(9))
     with pytest.raises(FolderGone, match="Stale file handle"):
         told(tmp_path)
+
+
+def test_a_result_without_one_of_its_files_makes_room(tmp_path: Path) -> None:
+    for sizes in ({"motion.bvh": 6}, {}):  # older results do not tell them
+        for spoil in (Path.unlink, lambda path: path.write_text("")):
+            with written_cell(tmp_path, CELL) as aside:
+                (aside / "motion.bvh").write_text("whole\n")
+                result = CellResult(CELL, State.DONE, "", "", "", files=("motion.bvh",))
+                (aside / RESULT).write_text(replace(result, sizes=sizes).as_json())
+            assert lasting_result(tmp_path, CELL) is not None
+            spoil(cell_folder(tmp_path, CELL) / "motion.bvh")
+            assert lasting_result(tmp_path, CELL) is None
+
+
+def test_a_file_of_another_size_makes_room_and_one_that_was_written_empty_does_not(
+    tmp_path: Path,
+) -> None:
+    with written_cell(tmp_path, CELL) as aside:
+        for name in ("log.txt", "motion.bvh"):
+            (aside / name).touch()
+        sizes = {"log.txt": 0, "motion.bvh": 6}
+        result = CellResult(CELL, State.DONE, "", "", "", files=tuple(sizes), sizes=sizes)
+        (aside / RESULT).write_text(result.as_json())
+    assert spoilt_files(tmp_path, CELL, result) == ("motion.bvh",)
 
 
 def test_a_folder_that_is_read_only_is_told(

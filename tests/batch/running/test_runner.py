@@ -12,6 +12,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from hangtime.batch import commands
 from hangtime.batch.records.faults import BatchFault, FolderGone, FolderTaken
 from hangtime.batch.records.locks import batch_lock
 from hangtime.batch.records.manifest import read_manifest
@@ -42,6 +43,26 @@ def test_every_cell_gets_a_result_and_the_same_command_solves_none_again(tmp_pat
     run(folder)
     assert len(lines(folder, "begin")) == 7
     assert not [p.name for p in (folder / CELLS).iterdir() if p.name.startswith(".")]
+
+
+def test_a_cell_whose_output_is_emptied_is_told_and_solved_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(commands, "worker_command", lambda **_: fake_batches.command())
+    folder, recipe = tmp_path / "out", tmp_path / "recipe.toml"
+    planned(tmp_path, {"a.bvh": "sleep 0", "b.bvh": "sleep 0.01"})
+    command = [str(tmp_path), "--recipes", str(recipe), "--out", str(folder), "--jobs", "1"]
+    assert commands.run(command) == 0
+    cell = read_manifest(folder).cells[1].cell
+    answer = folder / CELLS / cell / "answer.txt"
+    before = answer.read_text()
+    answer.write_text("")
+    capsys.readouterr()
+    assert commands.run(command) == 0
+    said = f"1 cell whose files are missing or changed is solved again: {cell} (answer.txt)."
+    assert said in capsys.readouterr().out
+    assert answer.read_text() == before
+    assert lines(folder, "begin")[2:] == [cell]
 
 
 @pytest.mark.slow
