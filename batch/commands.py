@@ -22,7 +22,7 @@ from .planning.blender_need import needs_blender, require_blender
 from .planning.plan import Asked, Planned, plan, refreshed
 from .records.faults import BatchFault
 from .records.locks import batch_lock
-from .records.manifest import BatchSettings, Manifest, Output, write_manifest
+from .records.manifest import BatchSettings, CellPlan, Manifest, Output, write_manifest
 from .records.result import State, read_result
 from .running.memory import MemoryWatch
 from .running.progress import Progress, counted, told
@@ -269,7 +269,7 @@ def _planned(options: argparse.Namespace) -> Planned:
     planned = plan(asked, options.out)
     cells = planned.manifest.cells
     done = sum(_done(planned.manifest).values())
-    print(counted(len(cells), "cell") + (f", {done} of them solved before" if done else "") + ".")
+    print(_told_size(cells) + (f"; {done} of them solved before" if done else "") + ".")
     if planned.spoilt:
         print(_told_spoilt(planned.spoilt))
     if planned.twice:
@@ -280,6 +280,13 @@ def _planned(options: argparse.Namespace) -> Planned:
             f"{options.out / 'cells'}, such as {planned.strays[0]}."
         )
     return planned
+
+
+def _told_size(cells: Sequence[CellPlan]) -> str:
+    """Such as "6 cells: 3 clips, 2 recipes", by which a clip that is missing is seen."""
+    clips, recipes = ({cell.clip for cell in cells}, {cell.recipe for cell in cells} - {""})
+    parts = [counted(len(clips), "clip"), *([counted(len(recipes), "recipe")] if recipes else [])]
+    return f"{counted(len(cells), 'cell')}: {', '.join(parts)}"
 
 
 def _told_spoilt(spoilt: Mapping[str, tuple[str, ...]]) -> str:

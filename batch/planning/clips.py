@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Collection, Iterator, Sequence
-from glob import glob, has_magic
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from fnmatch import fnmatch
+from glob import glob
 from pathlib import Path
 
 from ...bridge.formats.acclaim import clip_files
@@ -56,21 +57,57 @@ def files_meant(word: str, suffixes: Collection[str], out: Path) -> list[Path]:
 
 
 def _below(folder: Path, own: Path) -> Iterator[Path]:
-    """The files in a folder and all below, but for those of the batch's own. Raises OSError for a
-    folder that cannot be read: `rglob` passes it over, and its clips would be missing unsaid."""
-    for parent, folders, names in os.walk(folder, onerror=_raise):
-        folders[:] = [name for name in folders if Path(parent, name).resolve() != own]
-        yield from (Path(parent, name) for name in names)
+    """The files in a folder and all below, also behind links, but for hidden ones and those of the
+    batch's own. Each folder is gone into once, so that links in a circle end. Raises OSError for a
+    folder that cannot be read: `rglob` passes it over, and its clips would be missing unsaid;
+    WrongPlan for a link to nothing, likewise."""
+    gone_into = {str(own), os.path.realpath(folder)}
+    for parent, folders, names in os.walk(folder, onerror=_raise, followlinks=True):
+        inside, folders[:] = sorted(folders), []
+        for name in inside:
+            real = os.path.realpath(os.path.join(parent, name))
+            if not _hidden(name) and real not in gone_into:
+                gone_into.add(real)
+                folders.append(name)
+        yield from _there(Path(parent, name) for name in names if not _hidden(name))
 
 
 def _matching(pattern: str, own: Path) -> Iterator[Path]:
-    """The files that a pattern means. Raises OSError as `_below`, for the folders of a "**"."""
-    before, deep, _ = pattern.partition("**")
-    top = Path(os.path.dirname(before))
-    if deep and not has_magic(before) and top.is_dir():
-        for _ in _below(top, own):
-            pass
-    return map(Path, glob(pattern, recursive=True))
+    """The files that a pattern means. Raises as `_below`, for the folders of a "**"."""
+    words = pattern.replace(os.sep, "/").split("/")
+    if "**" not in words:
+        yield from _there(map(Path, glob(pattern)))
+        return
+    deep = words.index("**")
+    above = "/".join(words[:deep])  # empty also of "/**"
+    for top in map(Path, glob(f"{above}/") if above or deep else ["."]):
+        for path in _below(top, own) if top.is_dir() else ():
+            if _fits(path.relative_to(top).parts, words[deep:]):
+                yield path
+
+
+def _fits(parts: Sequence[str], words: Sequence[str]) -> bool:
+    """Whether a path's parts are as a pattern's words say, of which "**" is any number of them."""
+    if not words:
+        return not parts
+    if words[0] == "**":
+        return any(_fits(parts[k:], words[1:]) for k in range(len(parts) + 1))
+    return bool(parts) and fnmatch(parts[0], words[0]) and _fits(parts[1:], words[1:])
+
+
+def _there(paths: Iterable[Path]) -> Iterator[Path]:
+    """The same paths. Raises WrongPlan for a link to nothing."""
+    for path in paths:
+        if path.is_symlink() and not path.exists():
+            raise WrongPlan(
+                f"{path} is a link to {os.readlink(path)}, which is not there; mend or remove it."
+            )
+        yield path
+
+
+def _hidden(name: str) -> bool:
+    """Such as "._walk.bvh", which macOS leaves beside each file, and is no clip."""
+    return name.startswith(".")
 
 
 def _raise(error: OSError) -> None:

@@ -4,10 +4,12 @@ import errno
 import json
 import os
 import shutil
+import sys
 from pathlib import Path
 
 import pytest
-from hangtime.batch.planning.clips import find_clips
+from hangtime.batch.commands import run
+from hangtime.batch.planning.clips import files_meant, find_clips
 from hangtime.batch.planning.plan import MOST_CELLS, Asked, Planned, plan
 from hangtime.batch.records.faults import FolderTaken, WrongManifest, WrongPlan
 from hangtime.batch.records.manifest import MANIFEST, BatchSettings, read_manifest
@@ -85,6 +87,64 @@ def test_a_folder_that_cannot_be_read_refuses_the_batch(
     with pytest.raises(WrongPlan, match=r"second take cannot be read"):
         find_clips([str(library.folder / "clips" / "**" / "*.bvh")], library.out)
     assert not library.out.exists()
+
+
+needs_links = pytest.mark.skipif(sys.platform == "win32", reason="links need rights on Windows")
+
+
+@needs_links
+@pytest.mark.parametrize("word", ["clips", "clips/**/*.bvh", "cl*/**/*.bvh"])
+def test_folders_behind_links_are_searched_once_and_links_in_a_circle_end(
+    library: Library, word: str
+) -> None:
+    other, clips = library.folder / "archive", library.folder / "clips"
+    other.mkdir()
+    (other / "c.bvh").write_text("c")
+    (clips / "session").symlink_to(other)
+    (other / "back").symlink_to(clips)
+    (clips / "again").symlink_to(clips)
+    cells = library.plan(word).manifest.cells
+    assert {Path(c.clip).name for c in cells} == {"a.bvh", "b.bvh", "c.bvh", "日本 ü.bvh"}
+    assert len(cells) == 8
+
+
+@needs_links
+@pytest.mark.parametrize("name", ["k.bvh", "session"])
+@pytest.mark.parametrize("word", ["clips", "clips/**/*.bvh", "clips/*"])
+def test_a_link_to_nothing_refuses_the_batch_by_its_name(
+    library: Library, word: str, name: str
+) -> None:
+    (library.folder / "clips" / name).symlink_to(library.folder / "lost")
+    with pytest.raises(WrongPlan, match=rf"clips.{name} is a link to .*lost, which is not there"):
+        library.plan(word)
+    assert not library.out.exists()
+
+
+@pytest.mark.parametrize("word", ["clips", "clips/**/*.bvh", "clips/**"])
+def test_hidden_files_of_a_folder_are_no_clips(library: Library, word: str) -> None:
+    for name in ("._a.bvh", ".trash/z.bvh"):
+        (library.folder / "clips" / name).parent.mkdir(exist_ok=True)
+        (library.folder / "clips" / name).write_text("")
+    assert len(library.plan(word).manifest.cells) == 6
+    assert len(library.plan("clips", "clips/._a.bvh").manifest.cells) == 8  # named itself
+
+
+def test_a_pattern_means_what_lies_in_folders_of_its_names(
+    library: Library, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(library.folder)
+    for word, count in (("**/second*/*.bvh", 1), ("**/clips/**/b.*", 1), ("clips/*/**/a.bvh", 0)):
+        assert len(list(files_meant(word, [".bvh"], library.out))) == count
+
+
+def test_a_plan_tells_how_many_clips_and_recipes_it_has(
+    library: Library, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = [str(library.folder / "clips"), "--out", str(library.out)]
+    assert run(["plan", *words, "--recipes", str(library.folder / "recipe.toml")]) == 0
+    assert "6 cells: 3 clips, 1 recipe.\n" in capsys.readouterr().out
+    assert run(["plan", *words, "--check"]) == 0
+    assert "3 cells: 3 clips.\n" in capsys.readouterr().out
 
 
 def test_a_batchs_own_results_are_neither_its_clips_nor_its_recipes(library: Library) -> None:
