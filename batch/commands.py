@@ -25,12 +25,13 @@ from .records.locks import batch_lock
 from .records.manifest import BatchSettings, CellPlan, Manifest, Output, write_manifest
 from .records.result import State, read_result
 from .running.memory import MemoryWatch
-from .running.progress import Progress, counted, told
+from .running.progress import Progress
+from .running.reasons import counted, told_together
 from .running.runner import LocalRun
 from .running.workers import worker_command
 
 RUN = "run"
-MOST_TOLD = 20  # cells that are not done, by name, at the end
+MOST_TOLD = 20  # lines of cells that are not done, at the end
 MOST_SPOILT = 5  # cells whose files are missing, by name, at the start
 # What a batch ends with: the first of these that a cell of it has.
 WORST = (State.FAILED, State.WRONG_INPUT, State.NO_SOLUTION)
@@ -221,16 +222,15 @@ def _done(manifest: Manifest) -> Counter[State]:
 def _told_end(folder: Path, manifest: Manifest) -> int:
     """Says how it ended, with what is not done by name; the exit code."""
     counts = Counter(cell.state for cell in manifest.cells)
-    others = [cell for cell in manifest.cells if cell.state is not State.DONE]
     summary = ", ".join(f"{count} {state.value}" for state, count in counts.items())
     cells = counted(len(manifest.cells), "cell")
     print(f"{cells}: {summary}. Look at them in {folder / 'index.html'}.")
-    for cell in others[:MOST_TOLD]:
-        result = read_result(folder, cell.cell)
-        if result is not None:
-            print(f"  {told(cell, result)}")
-    if len(others) > MOST_TOLD:
-        print(f"  … and {len(others) - MOST_TOLD} more, which the manifest tells by their state.")
+    others = ((c, read_result(folder, c.cell)) for c in manifest.cells if c.state is not State.DONE)
+    lines = told_together((cell, result) for cell, result in others if result is not None)
+    for line, _ in lines[:MOST_TOLD]:
+        print(f"  {line}")
+    if more := sum(count for _, count in lines[MOST_TOLD:]):
+        print(f"  … and {more} more, which the manifest tells by their state.")
     return next((state.exit_code for state in WORST if counts[state]), 0)
 
 

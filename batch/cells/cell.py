@@ -117,11 +117,12 @@ def _result(
     seconds: dict[str, float],
     sizes: dict[str, int],
 ) -> CellResult:
+    clip, recipe = plan.names
     return CellResult(
         cell=plan.cell,
         state=ended.state,
-        clip=Path(plan.clip).name,
-        recipe=Path(plan.recipe).name,
+        clip=clip,
+        recipe=recipe,
         version=settings.version,
         sentence=ended.sentence,
         headline=ended.done.headline,

@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from ..records.faults import gone
+from ..records.names import short_names
 from ..records.result import State, cell_folder
 from .files import file_aside
-from .gathering import PICTURE, GatheredBatch, short_keys, short_names
+from .gathering import PICTURE, GatheredBatch, short_keys
 from .letters import HIGH, write
 from .png import Pixels, UnreadablePicture, read_png, shrunk, write_png
 

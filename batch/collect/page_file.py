@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from ..records.manifest import Output
+from ..records.names import short_names
 from ..records.result import State
 from .files import file_aside
-from .gathering import PICTURE, Columns, GatheredBatch, short_keys, short_names
+from .gathering import PICTURE, Columns, GatheredBatch, short_keys
 
 PARTS = Path(__file__).with_name("page")
 SCRIPTS = ("data.js", "filters.js", "lists.js", "plot.js", "cell.js", "main.js")

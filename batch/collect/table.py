@@ -5,8 +5,9 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
+from ..records.names import short_names
 from .files import file_aside
-from .gathering import GatheredBatch, short_names
+from .gathering import GatheredBatch
 
 LEADING = ("cell", "clip", "recipe", "state", "exit_code", "sentence")
 

@@ -19,6 +19,7 @@ from ..records.manifest import (
     read_manifest,
     write_manifest,
 )
+from ..records.names import short_names
 from ..records.result import CELLS, State, read_result, spoilt_files
 from .clips import clip_sha256
 from .pairs import Pair, crossed, read_table
@@ -66,7 +67,7 @@ def plan(asked: Asked, folder: Path) -> Planned:
     unique = {cell.key(asked.settings): cell for cell in found}
     _refuse_another(folder, found)
     cells, strays = _named(unique, folder)
-    cells, spoilt = _as_left(folder, cells)
+    cells, spoilt = _as_left(folder, _told_apart(cells))
     manifest = Manifest(asked.settings, cells)
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -74,6 +75,16 @@ def plan(asked: Asked, folder: Path) -> Planned:
         raise gone(folder, error) from error
     write_manifest(folder, manifest)
     return Planned(manifest, len(found) - len(unique), strays, spoilt)
+
+
+def _told_apart(cells: Sequence[CellPlan]) -> tuple[CellPlan, ...]:
+    """The cells with names of clips and recipes that no two share."""
+    clips = short_names(cell.clip for cell in cells)
+    recipes = short_names(cell.recipe for cell in cells)
+    return tuple(
+        replace(cell, clip_name=clips[cell.clip], recipe_name=recipes[cell.recipe])
+        for cell in cells
+    )
 
 
 def refreshed(folder: Path, cells: Sequence[CellPlan]) -> tuple[CellPlan, ...]:

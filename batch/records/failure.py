@@ -12,11 +12,12 @@ def write_failure(folder: Path, cell: str, sentence: str) -> CellResult:
     """A cell's result that tells why it failed; or what another process has told of it meanwhile.
     Raises WrongManifest where the manifest has no such cell, FolderGone."""
     settings, plan = read_plan(folder, cell)
+    clip, recipe = plan.names
     result = CellResult(
         cell=plan.cell,
         state=State.FAILED,
-        clip=Path(plan.clip).name,
-        recipe=Path(plan.recipe).name,
+        clip=clip,
+        recipe=recipe,
         version=settings.version,
         sentence=sentence,
         values=plan.values,

@@ -90,7 +90,8 @@ class CellPlan:
     cell: its name and its folder's. clip, recipe: paths; recipe is empty where a clip is only
     checked. recipe_sha256: of what the recipe says with the values in it, and of the files that it
     names. values: by places in the recipe, such as "pin.Landing.forward". state: when the manifest
-    was written.
+    was written. clip_name, recipe_name: as the page has them, by which no two of a batch are the
+    same; older manifests have none.
     """
 
     cell: str
@@ -100,6 +101,18 @@ class CellPlan:
     recipe_sha256: str
     values: Mapping[str, Value] = field(default_factory=dict)
     state: State = State.PLANNED
+    clip_name: str = ""
+    recipe_name: str = ""
+
+    @property
+    def number(self) -> str:
+        """The part of its name that people read."""
+        return self.cell.partition("-")[0]
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """Of clip and recipe, for people."""
+        return self.clip_name or Path(self.clip).name, self.recipe_name or Path(self.recipe).name
 
     def key(self, settings: BatchSettings) -> str:
         """SHA-256, hexadecimal, of all that the cell's result depends on: names and contents, but

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from pathlib import Path
 from time import monotonic
 from typing import TextIO
 
 from ..records.manifest import CellPlan
 from ..records.result import CellResult, State
+from .reasons import told
 
 SILENCE_S = 10.0  # between lines where there is no terminal to write in place
 STILL_S = 60.0  # the same, while no cell ends
@@ -70,18 +70,6 @@ class Progress:
         pace = f"{rate:.1f} a second" if rate >= 1.0 else f"{1.0 / rate:.1f} s each"
         left = self._total - ended
         return f"{text}; {pace}" + (f", {duration(left / rate)} left" if left else "")
-
-
-def told(plan: CellPlan, result: CellResult) -> str:
-    """A cell that is not done, in a line: which, and why."""
-    values = ", ".join(f"{name} = {value}" for name, value in plan.values.items())
-    which = " + ".join(word for word in (Path(plan.clip).name, Path(plan.recipe).name) if word)
-    return f"{result.state.value}: {which}{f' ({values})' if values else ''}: {result.sentence}"
-
-
-def counted(count: int, word: str) -> str:
-    """Such as "1 cell", "2 cells"."""
-    return f"{count} {word}" + ("" if count == 1 else "s")
 
 
 def duration(seconds: float) -> str:

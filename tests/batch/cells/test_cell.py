@@ -239,7 +239,7 @@ def test_the_command_line_runs_a_batch_and_goes_on_with_it(
     recipe.write_text(RECIPE.format("ground 7", "[0.1]"))
     assert run(command) == 2
     told = capsys.readouterr().out
-    assert "wrong input: hop_01_01.bvh + recipe.toml" in told
+    assert "wrong input: 00002 hop_01_01.bvh + recipe.toml" in told
     assert "of an earlier plan" in told
     assert run([*command, "--check"]) == 0
     results = [read_result(tmp_path / "out", c.cell) for c in cells(tmp_path / "out")]

@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 from hangtime.batch.collect.collecting import collect
 from hangtime.batch.collect.contact_sheet import MOST
-from hangtime.batch.collect.gathering import columns, gather, short_keys, short_names
+from hangtime.batch.collect.gathering import columns, gather, short_keys
 from hangtime.batch.collect.letters import BOX, HIGH, LETTERS, WIDE, write
 from hangtime.batch.collect.page_file import as_embedded, page_data
 from hangtime.batch.collect.png import read_png
 from hangtime.batch.records.faults import FolderGone, WrongManifest
+from hangtime.batch.records.names import short_names
 from hangtime.batch.records.result import CELLS, RESULT, State, read_result
 from hangtime.devtools.batch_page.made_up import HARD_NAMES, make_batch
 

@@ -37,7 +37,7 @@ def test_every_cell_gets_a_result_and_the_same_command_solves_none_again(tmp_pat
     folder = tmp_path / "out"
     told = run(folder)
     assert Counter(states(folder).values()) == {State.DONE: 6, State.NO_SOLUTION: 1}
-    assert "no solution: impossible.bvh + recipe.toml: No motion was found" in told
+    assert "no solution: 00007 impossible.bvh + recipe.toml: No motion was found" in told
     assert "7 of 7 cells" in told
     assert len(set(lines(folder, "begin"))) == len(lines(folder, "begin")) == 7
     run(folder)
@@ -63,6 +63,26 @@ def test_a_cell_whose_output_is_emptied_is_told_and_solved_again(
     assert said in capsys.readouterr().out
     assert answer.read_text() == before
     assert lines(folder, "begin")[2:] == [cell]
+
+
+def test_cells_of_clips_with_the_same_name_are_told_apart_and_alike_ones_together(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(commands, "worker_command", lambda **_: fake_batches.command())
+    for day in ("mon", "tue"):
+        (tmp_path / day).mkdir()
+    recipe = '[[pin]]\nname = "L"\nphase = "ground 2"\nforward = [0.1, 0.2]\n'
+    planned(tmp_path, {"mon/walk.bvh": "crash", "tue/walk.bvh": "fault"}, recipe)
+    words = ["--recipes", str(tmp_path / "recipe.toml"), "--out", str(tmp_path / "out")]
+    assert commands.run([str(tmp_path), *words, "--jobs", "1"]) == 1
+    told = capsys.readouterr().out
+    assert "failed: 00002 mon/walk.bvh + recipe.toml (pin.L.forward = 0.2): A fault" in told
+    closing = told.partition("index.html")[2]
+    assert "\n  failed: mon/walk.bvh (2 cells, such as 00001): A fault of Hangtime's" in closing
+    assert "\n  no solution: tue/walk.bvh (2 cells, such as 00003): No motion" in closing
+    assert len(closing.strip().splitlines()) == 3
+    results = [read_result(tmp_path / "out", c.cell) for c in read_manifest(tmp_path / "out").cells]
+    assert {r.clip for r in results if r is not None} == {"mon/walk.bvh", "tue/walk.bvh"}
 
 
 @pytest.mark.slow
