@@ -56,6 +56,7 @@ def run(argv: Sequence[str]) -> int:
         print(explained(fault, None), file=sys.stderr)
     except BatchFault as fault:
         print(fault, file=sys.stderr)
+        return fault.exit_code
     except KeyboardInterrupt:
         print("\nInterrupted; the same command again goes on from here.", file=sys.stderr)
         return CANCELLED

@@ -20,7 +20,13 @@ ENDING = 10.0  # s that what is under way on the loop may take once it is called
 
 
 class FarmGone(BatchFault):
-    """A scheduler that cannot be reached, or no more."""
+    """A scheduler that is reached no more."""
+
+
+class NoFarm(FarmGone):
+    """An address at which no scheduler answers."""
+
+    exit_code = 2
 
 
 class _OwnClient(Client):  # type: ignore[misc]  # Dask has no types
@@ -37,7 +43,7 @@ class _OwnClient(Client):  # type: ignore[misc]  # Dask has no types
 
 @contextmanager
 def connected(address: str) -> Iterator[Client]:
-    """A client of the scheduler at an address, or of a scheduler file. Raises FarmGone."""
+    """A client of the scheduler at an address, or of a scheduler file. Raises NoFarm."""
     file = Path(address)
     with event_loop() as loop:
         try:
@@ -46,7 +52,7 @@ def connected(address: str) -> Iterator[Client]:
             else:
                 client = _OwnClient(address, timeout=ANSWERING, loop=loop)
         except (OSError, TimeoutError, ValueError) as error:
-            raise FarmGone(
+            raise NoFarm(
                 f"No scheduler answers at {address} ({error or type(error).__name__}); check the "
                 "address, such as tcp://host:8786, or the scheduler file, and that it runs."
             ) from error

@@ -4,15 +4,22 @@ from pathlib import Path
 
 
 class BatchFault(Exception):
-    """A batch that cannot be planned, begun or gone on with."""
+    """A batch that cannot be planned, begun or gone on with. exit_code: 1, as of `State.FAILED`,
+    where the same command may do later; 2 where what was asked has to change."""
+
+    exit_code = 1
 
 
 class WrongPlan(BatchFault):
     """Clips, recipes, ranges or a table that make no batch."""
 
+    exit_code = 2
+
 
 class WrongManifest(BatchFault):
     """A manifest that is not there, or was edited."""
+
+    exit_code = 2
 
 
 class OtherVersion(WrongManifest):
@@ -20,7 +27,13 @@ class OtherVersion(WrongManifest):
 
 
 class FolderTaken(BatchFault):
-    """A folder in which another batch is, or runs."""
+    """A folder in which another batch is."""
+
+    exit_code = 2
+
+
+class FolderBusy(BatchFault):
+    """A folder in which a batch runs."""
 
 
 class FolderGone(BatchFault):

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from .faults import FolderTaken, gone
+from .faults import FolderBusy, gone
 
 LOCK = ".lock"
 _BYTE = 1 << 30  # that is locked on Windows: not one that anybody reads
@@ -24,7 +24,7 @@ def held(path: Path) -> Iterator[None]:
 
 @contextmanager
 def batch_lock(folder: Path) -> Iterator[None]:
-    """One batch at a time runs in a folder. Raises FolderTaken, FolderGone."""
+    """One batch at a time runs in a folder. Raises FolderBusy, FolderGone."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         file = (folder / LOCK).open("ab")
@@ -34,7 +34,7 @@ def batch_lock(folder: Path) -> Iterator[None]:
         try:
             _lock(file, wait=False)
         except (BlockingIOError, PermissionError) as error:  # the latter on Windows
-            raise FolderTaken(
+            raise FolderBusy(
                 f"Another batch is running in {folder}; wait until it ends, or take another folder."
             ) from error
         except OSError as error:  # a file system without locks

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 from hangtime.batch import commands
-from hangtime.batch.records.faults import BatchFault, FolderGone, FolderTaken
+from hangtime.batch.records.faults import BatchFault, FolderBusy, FolderGone
 from hangtime.batch.records.locks import batch_lock
 from hangtime.batch.records.manifest import read_manifest
 from hangtime.batch.records.result import CELLS, State, read_result
@@ -141,10 +141,28 @@ def test_workers_that_cannot_start_are_told_in_a_sentence(tmp_path: Path) -> Non
 
 
 def test_a_second_batch_in_the_folder_is_refused_while_one_runs(tmp_path: Path) -> None:
-    with batch_lock(tmp_path), pytest.raises(FolderTaken, match="running"), batch_lock(tmp_path):
+    with batch_lock(tmp_path), pytest.raises(FolderBusy, match="running"), batch_lock(tmp_path):
         pass
     with batch_lock(tmp_path):
         pass
+
+
+def test_what_passes_ends_with_another_code_than_wrong_input(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    planned(tmp_path, {"a.bvh": "sleep 0"})
+    command = ["plan", str(tmp_path), "--check", "--out", str(tmp_path / "out")]
+    with batch_lock(tmp_path / "out"):
+        assert commands.run(command) == 1
+    assert "Another batch is running" in capsys.readouterr().err
+
+    def fill(*_: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "replace", fill)
+    assert commands.run(command) == 1
+    assert "No space left on device" in capsys.readouterr().err
+    assert commands.run(["plan", str(tmp_path / "none"), *command[2:]]) == 2
 
 
 def test_a_folder_that_knows_no_locks_is_told_as_that(
