@@ -193,6 +193,14 @@ def test_a_mesh_that_a_recipe_names_counts_as_part_of_it(library: Library) -> No
     assert all(c.state is State.PLANNED for c in library.plan().manifest.cells)
 
 
+def test_samples_are_the_same_points_for_every_clip(library: Library) -> None:
+    drawn = "{ from = 0, to = 1 }\n[batch]\ncombine = 'sample'\ncount = 3"
+    library.recipe(drawn)
+    values = [c.values["pin.Landing.forward"] for c in library.plan().manifest.cells]
+    assert values == values[:3] * 3
+    assert len(set(values)) == 3
+
+
 def test_a_table_names_the_pairs_and_gives_values_in_place_of_the_ranges(library: Library) -> None:
     text = "clip,recipe,pin.Landing.forward,pin.Landing.up\nclips/a.bvh,recipe.toml,0.5,0.1\n"
     planned = library.table("pairs.csv", text + '"clips/日本 ü.bvh",recipe.toml,,0.2\n')
