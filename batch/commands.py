@@ -23,7 +23,7 @@ from .planning.plan import Asked, Planned, plan, refreshed
 from .records.faults import BatchFault
 from .records.locks import batch_lock
 from .records.manifest import BatchSettings, CellPlan, Manifest, Output, write_manifest
-from .records.result import State, read_result
+from .records.result import WORSE, State, read_result
 from .running.memory import MemoryWatch
 from .running.progress import Progress
 from .running.reasons import counted, told_together
@@ -225,14 +225,27 @@ def _told_end(folder: Path, manifest: Manifest) -> int:
     counts = Counter(cell.state for cell in manifest.cells)
     summary = ", ".join(f"{count} {state.value}" for state, count in counts.items())
     cells = counted(len(manifest.cells), "cell")
-    print(f"{cells}: {summary}. Look at them in {folder / 'index.html'}.")
-    others = ((c, read_result(folder, c.cell)) for c in manifest.cells if c.state is not State.DONE)
-    lines = told_together((cell, result) for cell, result in others if result is not None)
+    held = _told_held(folder, manifest)
+    print(f"{cells}: {summary}.{held} Look at them in {folder / 'index.html'}.")
+    others = (cell for cell in manifest.cells if cell.state is not State.DONE)
+    results = ((cell, read_result(folder, cell.cell)) for cell in others)
+    lines = told_together((cell, result) for cell, result in results if result is not None)
     for line, _ in lines[:MOST_TOLD]:
         print(f"  {line}")
     if more := sum(count for _, count in lines[MOST_TOLD:]):
         print(f"  … and {more} more, which the manifest tells by their state.")
     return next((state.exit_code for state in WORST if counts[state]), 0)
+
+
+def _told_held(folder: Path, manifest: Manifest) -> str:
+    """How many of the done the certificate has nothing against that is the batch's doing; empty
+    where there is no certificate, as after --check."""
+    done = (read_result(folder, c.cell) for c in manifest.cells if c.state is State.DONE)
+    worse = [each.figures[WORSE] for each in done if each is not None and WORSE in each.figures]
+    if not worse:
+        return ""
+    which = f"{worse.count(0.0)} of the {len(worse)} done"
+    return f" In {which} no line of the certificate fails, or only as in the recording."
 
 
 @contextmanager

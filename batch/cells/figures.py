@@ -10,6 +10,7 @@ from math import isfinite
 
 from ...solver.data.reports.certificate import CertificateItem
 from ...solver.data.reports.report import FitQuality, Report
+from ..records.result import WORSE
 
 UNITS = {  # of the certificate, as names end
     "%": "_percent",
@@ -31,6 +32,10 @@ def figures(report: Report) -> dict[str, float]:
         "change_joint_centres_rms_cm": report.change.joint_centres_rms_cm,
         "change_joint_angles_rms_deg": report.change.joint_angles_rms_deg,
         "certificate_failed": float(len(report.failed)),
+        WORSE: float(sum(not line.as_recorded for line in report.failed)),
+        "certificate_worst_times_limit": max(
+            (line.value / line.limit for line in report.certificate), default=0.0
+        ),
         "recorded_peak_force_bw": report.forces.recorded_peak_bw,
     }
     for jump in report.jumps:

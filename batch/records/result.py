@@ -17,6 +17,7 @@ from .locks import held
 
 CELLS, FITS = "cells", "fits"  # within a batch's folder
 RESULT = "result.json"  # within a cell's; its last file to be written
+WORSE = "certificate_worse_than_recorded"  # figure: lines that fail, and not as in the recording
 LOOKS = 3  # at a result that another machine replaces meanwhile
 PLACING = ".placing.lock"  # within a batch's; held while a cell takes its place
 

@@ -3,7 +3,7 @@
 Run as a program this is a worker that solves such cells; with a folder, a run of its batch.
 
 sleep SECONDS: as long as that; dies: ends its process; dies once: the first time; fault: has no
-solution; crash: raises. Each begin and end is a line in the folder's "work.log".
+solution; crash: raises; worse: fails a line of the certificate. Each begin and end is a line in the folder's "work.log".
 """
 
 from __future__ import annotations
@@ -90,7 +90,8 @@ def _solver(folder: Path) -> Any:
             time.sleep(float(text.split()[1]))
         outbox.write_text("answer.txt", f"{text}\n" * 1000)
         log(f"end {plan.cell}")
-        return Done(("Solved.",), {"answer_m": 1.0})
+        worse = float(text == "worse")
+        return Done(("Solved.",), {"answer_m": 1.0, "certificate_worse_than_recorded": worse})
 
     return lambda cell: run_cell(folder, cell, work=work)
 

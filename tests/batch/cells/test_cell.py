@@ -1,5 +1,6 @@
 """Cells that are truly solved: one short hop, whose fit the tests of this file share."""
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,14 @@ from hangtime.batch.planning import blender_need
 from hangtime.batch.planning.plan import Asked, plan
 from hangtime.batch.records.faults import FolderGone, WrongPlan
 from hangtime.batch.records.manifest import BatchSettings, CellPlan, Output, read_manifest
-from hangtime.batch.records.result import CELLS, FITS, State, cell_folder, read_result
+from hangtime.batch.records.result import (
+    CELLS,
+    FITS,
+    CellResult,
+    State,
+    cell_folder,
+    read_result,
+)
 from hangtime.bridge.formats.bvh import read_bvh
 from hangtime.solver.data.faults import OutputNotWritable
 from hangtime.solver.fitting.fit import Fit
@@ -62,7 +70,23 @@ def test_a_cell_leaves_what_was_asked_for_in_a_folder_of_its_own(batch: Path) ->
     assert {p.name for p in cell_folder(batch, cell).iterdir()} == {*wanted, "result.json"}
     assert read_result(batch, cell) == result
     assert all(name == name.lower() for name in result.figures)
-    assert len(set(result.figures.values())) == len(result.figures)  # nothing is told twice
+    counts = {"certificate_failed", "certificate_worse_than_recorded"}  # may be the same
+    others = [value for name, value in result.figures.items() if name not in counts]
+    assert len(set(others)) == len(others)  # nothing is told twice
+    assert_certificate(result, json.loads((cell_folder(batch, cell) / "report.json").read_text()))
+
+
+def assert_certificate(result: CellResult, report: dict[str, Any]) -> None:
+    """What a program filters by is as the report's lines have it."""
+    lines, figures = report["certificate"], result.figures
+    worst = max(line["value"] / line["limit"] for line in lines)
+    assert figures["certificate_worst_times_limit"] == pytest.approx(worst)
+    failed = [line for line in lines if not line["holds"]]
+    assert figures["certificate_failed"] == len(failed)
+    alike = [
+        line for line in failed if line["limit"] < line.get("recorded", 0) >= line["value"] / 1.05
+    ]
+    assert figures["certificate_worse_than_recorded"] == len(failed) - len(alike)
 
 
 def test_a_cell_that_is_solved_is_not_solved_again(batch: Path) -> None:

@@ -1,5 +1,6 @@
 """The local runner, with cells that are cheap: order, deaths, memory, kills and resuming."""
 
+import csv
 import errno
 import os
 import random
@@ -63,6 +64,21 @@ def test_a_cell_whose_output_is_emptied_is_told_and_solved_again(
     assert said in capsys.readouterr().out
     assert answer.read_text() == before
     assert lines(folder, "begin")[2:] == [cell]
+
+
+def test_the_end_tells_how_many_the_certificate_has_nothing_new_against(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(commands, "worker_command", lambda **_: fake_batches.command())
+    planned(tmp_path, {"a.bvh": "worse", "b.bvh": "sleep 0", "c.bvh": "fault"})
+    words = ["--recipes", str(tmp_path / "recipe.toml"), "--out", str(tmp_path / "out")]
+    assert commands.run([str(tmp_path), *words, "--jobs", "1"]) == 3
+    told = capsys.readouterr().out
+    assert "In 1 of the 2 done no line of the certificate fails, or only as in the" in told
+    table = (tmp_path / "out" / "table.csv").read_text(encoding="utf-8-sig")
+    rows = {row["clip"]: row for row in csv.DictReader(table.splitlines())}
+    worse = {clip: row["certificate_worse_than_recorded"] for clip, row in rows.items()}
+    assert worse == {"a.bvh": "1.0", "b.bvh": "0.0", "c.bvh": ""}
 
 
 def test_cells_of_clips_with_the_same_name_are_told_apart_and_alike_ones_together(
