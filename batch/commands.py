@@ -17,13 +17,14 @@ from ..operators.headless.explained import CANCELLED, WRONG_INPUT, explained
 from ..solver.data.faults import Fault
 from ..solver.numerics.parallel import cores
 from .collect.collecting import collect
+from .collect.gathering import GatheredBatch
 from .farm.commands import FARM_ACTS, add_farm_commands
 from .planning.blender_need import needs_blender, require_blender
 from .planning.plan import Asked, Planned, plan, refreshed
 from .records.faults import BatchFault
 from .records.locks import batch_lock
 from .records.manifest import BatchSettings, CellPlan, Manifest, Output, write_manifest
-from .records.result import WORSE, State, read_result
+from .records.result import WORSE, State
 from .running.memory import MemoryWatch
 from .running.progress import Progress
 from .running.reasons import counted, told_together
@@ -182,8 +183,8 @@ def run_batch(options: argparse.Namespace) -> int:
             with suppress(BatchFault):  # that of the run is the one to be told
                 manifest = replace(manifest, cells=refreshed(folder, manifest.cells))
                 write_manifest(folder, manifest)
-        collect(folder)
-    return _told_end(folder, manifest)
+        batch = collect(folder)
+    return _told_end(batch)
 
 
 def _solve(options: argparse.Namespace, manifest: Manifest, progress: Progress) -> None:
@@ -220,16 +221,14 @@ def _done(manifest: Manifest) -> Counter[State]:
     return Counter(cell.state for cell in manifest.cells if cell.state not in still)
 
 
-def _told_end(folder: Path, manifest: Manifest) -> int:
+def _told_end(batch: GatheredBatch) -> int:
     """Says how it ended, with what is not done by name; the exit code."""
-    counts = Counter(cell.state for cell in manifest.cells)
+    counts = Counter(batch.states)
     summary = ", ".join(f"{count} {state.value}" for state, count in counts.items())
-    cells = counted(len(manifest.cells), "cell")
-    held = _told_held(folder, manifest)
-    print(f"{cells}: {summary}.{held} Look at them in {folder / 'index.html'}.")
-    others = (cell for cell in manifest.cells if cell.state is not State.DONE)
-    results = ((cell, read_result(folder, cell.cell)) for cell in others)
-    lines = told_together((cell, result) for cell, result in results if result is not None)
+    cells, held = counted(len(batch.plans), "cell"), _told_held(batch)
+    print(f"{cells}: {summary}.{held} Look at them in {batch.folder / 'index.html'}.")
+    ended = ((c, r) for c, r in zip(batch.plans, batch.results, strict=True) if r is not None)
+    lines = told_together((c, r) for c, r in ended if r.state is not State.DONE)
     for line, _ in lines[:MOST_TOLD]:
         print(f"  {line}")
     if more := sum(count for _, count in lines[MOST_TOLD:]):
@@ -237,11 +236,11 @@ def _told_end(folder: Path, manifest: Manifest) -> int:
     return next((state.exit_code for state in WORST if counts[state]), 0)
 
 
-def _told_held(folder: Path, manifest: Manifest) -> str:
+def _told_held(batch: GatheredBatch) -> str:
     """How many of the done the certificate has nothing against that is the batch's doing; empty
     where there is no certificate, as after --check."""
-    done = (read_result(folder, c.cell) for c in manifest.cells if c.state is State.DONE)
-    worse = [each.figures[WORSE] for each in done if each is not None and WORSE in each.figures]
+    done = (each for each in batch.results if each is not None and each.state is State.DONE)
+    worse = [each.figures[WORSE] for each in done if WORSE in each.figures]
     if not worse:
         return ""
     which = f"{worse.count(0.0)} of the {len(worse)} done"
