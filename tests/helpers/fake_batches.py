@@ -3,7 +3,8 @@
 Run as a program this is a worker that solves such cells; with a folder, a run of its batch.
 
 sleep SECONDS: as long as that; dies: ends its process; dies once: the first time; fault: has no
-solution; crash: raises; worse: fails a line of the certificate. Each begin and end is a line in the folder's "work.log".
+solution; crash: raises; worse: fails a line of the certificate. Each begin and end is a line in the
+folder's "work.log".
 """
 
 from __future__ import annotations
