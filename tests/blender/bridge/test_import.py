@@ -36,6 +36,7 @@ from hangtime.tests.helpers.clips import mocap_path
 bpy = pytest.importorskip("bpy")
 
 JUMP_BVH = "forward_jump_116cm.bvh"
+DANCE = "rokoko_jesse_dance.bvh"
 RUN_FBX = "09_11_cmu.fbx"
 CHILD_BVH = "fair1_jumping.bvh"
 HOP_FRAMES = 400
@@ -113,7 +114,10 @@ def assert_same_motion(imported: ImportedClip, recording: Recording, scale: floa
             np.testing.assert_allclose(reached, tail, atol=1e-4, err_msg=bone.name)
 
 
-@pytest.mark.parametrize("relative", [JUMP_BVH, CHILD_BVH, "rokoko_jesse_dance.bvh", HOPS])
+@pytest.mark.parametrize(
+    "relative",
+    [CHILD_BVH, *(pytest.param(p, marks=pytest.mark.slow) for p in (JUMP_BVH, DANCE, HOPS))],
+)
 def test_blender_evaluates_what_the_file_says(relative: str, path_of: Paths) -> None:
     path = path_of(relative)
     recording = read(path)

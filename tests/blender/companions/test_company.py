@@ -137,6 +137,7 @@ def written(
     return sample(armature, FRAMES), made
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mode", ["QUATERNION", "XYZ", "AXIS_ANGLE"])
 @pytest.mark.parametrize("root", ["along", "still"])
 @pytest.mark.parametrize(("move", "back"), [(AHEAD, False), (TURNED, False), (TURNED, True)])

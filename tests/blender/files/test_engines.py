@@ -52,6 +52,7 @@ def test_a_jump_comes_back_from_every_file(way: Way, tmp_path: Path) -> None:
     assert degrees < DEGREES
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("engine", "form"),
     [

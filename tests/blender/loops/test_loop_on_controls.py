@@ -63,6 +63,7 @@ def performed(rig: bpy.types.Object) -> PoseTrack:
     return PoseTrack(FRAMES, names, shown.rotations[:, columns], shown.heads[:, columns[0]])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("root", "local"),
     [(LoopRoot.HIPS, True), (LoopRoot.HIPS, False), (LoopRoot.IN_PLACE, True)],

@@ -131,6 +131,7 @@ def test_red_appears_where_the_sphere_is(plain, tmp_path):
     assert 0.5 < red[:, 0].mean() / len(shown) < 0.95
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("mark", "measure"),
     [

@@ -185,6 +185,7 @@ def test_a_pole_gets_keys_of_its_turn_only_where_the_take_has_some(turned: bool)
     assert (pole.path_from_id("rotation_quaternion") in paths) == turned
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lower", [0.0, 0.002, 0.01])
 def test_a_leg_that_was_pulled_straight_is_bent_again(lower: float) -> None:
     """While its foot's control is out of reach no small pull along the leg does anything."""

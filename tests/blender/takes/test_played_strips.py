@@ -80,6 +80,7 @@ def test_the_recording_is_where_the_scene_shows_it() -> None:
         np.testing.assert_allclose(found, np.array(seen.translation), atol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("written_as", FORMS)
 @pytest.mark.parametrize("scale", [1.0, 1.5, 0.5])
 def test_a_result_is_the_take_there_and_changed_only_in_its_frames(

@@ -228,6 +228,7 @@ def later(recording: Recording, **options: object) -> AdaptedMotion:
     return AdaptedMotion(track, times, None, replace(OPTIONS, **options))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("moved", [None, MOVED])
 @pytest.mark.parametrize("longer", [0.0, 3.0, 3.4, 3.958, -3.5, -2.6])
 @pytest.mark.parametrize("room", [1, 2, 5, 7, 8, 9])

@@ -112,6 +112,7 @@ def test_inverse_dynamics_of_random_trees_is_mujocos(seed: int) -> None:
     assert relative(ours.torques[:, order], theirs[:, 6:]) < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("orthogonal", [False, True])
 @pytest.mark.parametrize("seed", SEEDS)
 def test_derivatives_of_torques_are_those_of_expressions(seed: int, orthogonal: bool) -> None:

@@ -395,6 +395,7 @@ def as_filmed(recording: Recording, seed: int) -> Recording:
     return filmed.posed(clean)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("clip", ["forward_jump_116cm.bvh", "high_jump.bvh", CHILD])
 def test_standing_feet_stand_however_video_capture_shifts_them(clip: str, seed: int) -> None:

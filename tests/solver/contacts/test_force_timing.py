@@ -59,6 +59,7 @@ def test_stances_against_force_plates(side: str) -> None:
     assert max(c.end for c in mine) == pytest.approx(end, abs=WITHIN)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", [24, 30, 60, 100, 240])
 def test_times_do_not_depend_on_the_frame_rate(rate: int) -> None:
     recording = load_recording(JUMP)

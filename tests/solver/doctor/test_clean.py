@@ -12,6 +12,7 @@ def test_a_clean_recording_has_no_findings() -> None:
     assert diagnose(jump(), mass=70.0).findings == ()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "every", "first"),
     [

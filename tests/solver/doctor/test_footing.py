@@ -142,6 +142,7 @@ def test_a_dance_of_which_little_stands_does_not_slide(first: float) -> None:
     assert FindingKind.SLIDING not in kinds
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["run_1.bvh", "run_3.bvh", "BMC_run.bvh"])
 @pytest.mark.parametrize("belt", [False, True])
 def test_hips_in_place_above_steady_feet_get_their_way_back(name: str, *, belt: bool) -> None:

@@ -58,6 +58,7 @@ def test_the_floor_is_where_the_ground_is() -> None:
     assert told(raised(0.1).of(jump()).recording, floor) == ["floor"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("velocity", "spin", "alone"),
     [

@@ -16,6 +16,7 @@ def hops() -> Recording:
     return load_recording("hops_in_place.bvh").window(400, 660)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("factor", "way"), [(1.5, "slowly"), (2.0, "slowly"), (1 / 1.5, "fast")])
 def test_a_flight_that_falls_otherwise_than_others_is_told_with_its_frames(
     factor: float, way: str

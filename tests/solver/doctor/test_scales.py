@@ -45,6 +45,7 @@ def test_an_import_without_scale_and_frame_rate_has_two_remedies(played: float) 
     assert kinds(diagnose(repaired(recording, found.repairs))) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("unit", [0.0254, 0.01])
 def test_a_child_in_a_files_own_units_stays_a_child(unit: float) -> None:
     """At a grown person's height it would seem to fall as at 100 frames a second."""

@@ -216,6 +216,7 @@ def test_other_recordings_adapt(relative: str, name: str) -> None:
     assert_valid(adaptation.motion, adaptation.setup.schedule)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gravity", [9.81, 2.5])
 def test_the_beginning_stays_where_the_take_comes_from(gravity: float) -> None:
     """In a quarter of the gravity it took a run-up from 25 cm behind."""

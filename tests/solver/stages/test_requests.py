@@ -164,6 +164,7 @@ def adapted(name: str) -> Adaptation:
     return adapt(fitted_hop(), MotionProblem(pins=case.pins, requests=case.make()))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ALL)
 def test_it_is_solved_and_met_everywhere(name: str) -> None:
     adaptation = adapted(name)

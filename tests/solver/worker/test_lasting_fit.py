@@ -213,6 +213,7 @@ def test_a_figure_without_toes_keeps_its_contacts() -> None:
     assert not fitted.let_go
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("every", [1, 4])
 def test_a_skid_of_both_feet_leaves_no_contradiction_behind(every: int) -> None:
     """They are at one place and then, at once, at another. every: of so many frames one is there;

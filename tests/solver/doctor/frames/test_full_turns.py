@@ -16,6 +16,7 @@ from hangtime.solver.numerics.rotations import rotation_matrix
 from hangtime.tests.helpers.doctored import figure, jump
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", [30.0, 60.0, 120.0])
 @pytest.mark.parametrize("frames", [2, 3, 4, 6])
 @pytest.mark.parametrize("part", [Part.PELVIS, Part.THIGH, Part.FOREARM])
@@ -45,6 +46,7 @@ def test_half_a_turn_there_and_back_is_no_full_turn(frames: int) -> None:
     assert find_full_turns(damaged, figure()) is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", [24.0, 30.0, 60.0, 120.0])
 @pytest.mark.parametrize("seconds", [0.3, 0.4, 0.7])
 @pytest.mark.parametrize("axis", np.eye(3), ids="xyz")

@@ -50,6 +50,7 @@ def test_frames_put_in_aloft_are_taken_out(rate: float) -> None:
     assert apart(mended, whole) < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", [30.0, 60.0, 120.0])
 def test_a_pose_held_over_others_aloft_is_filled_in(rate: float) -> None:
     whole, count = at_rate(jump(), rate), round(0.3 * rate)

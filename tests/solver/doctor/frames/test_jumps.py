@@ -28,6 +28,7 @@ def test_a_leap_of_the_whole_body_is_named_and_left_out() -> None:
     assert find_leaps(perform(jump(), character())) is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("at", "kept"),
     [((60,), (60, 252)), ((180,), (0, 179)), ((40, 200), (40, 199)), ((200, 230), (0, 199))],
@@ -71,6 +72,7 @@ def test_what_is_left_out_for_one_fault_is_left_out_for_all() -> None:
     assert diagnosis.repairs.trim == 60
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("frames", [3, 5, 8, 15])
 def test_an_end_at_which_a_bone_jumps_about_is_left_out(frames: int) -> None:
     """None of its steps stands out from the others."""
