@@ -22,7 +22,7 @@ from ..inverse_kinematics.reseat import com_shift
 from ..numerics.splines import THIRD_DERIVATIVE_WEIGHT, dense_instants, greville_abscissae
 from ..transcription.motion import Motion
 from .durations import TimedMotion, find_durations
-from .warm_start import Standing, stance_moves, warm_start
+from .warm_start import Standing, continuation_steps, stance_moves, warm_start
 
 MIN_MOVE = 1e-6  # m, of a landing relative to its take-off
 LEGS_AND_TRUNK = (Part.PELVIS, Part.SPINE, Part.THIGH, Part.SHANK, Part.FOOT, Part.TOE)
@@ -33,6 +33,7 @@ MAX_STANDING_SPEED = 0.5  # m/s, along the floor; half of a slow walk's
 MIN_DEPTH = 0.02  # m, of a crouch
 STANDING_SHARE = 0.1  # of a crouch's depth, above which the body still stands
 FALLEN_SHARE = 0.2  # of a crouch's depth; lower than this before it is another movement
+MAX_STEPS = 4  # of continuation, 2 m: nobody jumps so much further or higher
 MIN_LENGTH = 1.0 / 16.0  # of the way, of a step of continuation
 SAMPLING_RATE = 240.0  # Hz
 
@@ -102,7 +103,8 @@ def anticipate(
             touches = contact.start < move.end and contact.end > move.start
             if touches and not contact.asked_for:
                 places[i] = before[i] + move.shift
-    found = _timed(start, schedule, places, jumps)
+    near = continuation_steps(moves) <= MAX_STEPS
+    found = _timed(start, schedule, places, jumps, MIN_LENGTH if near else 1.0)
     return None if found is None else _resized(start.motion, jumps, found, kept)
 
 
@@ -111,11 +113,12 @@ def _timed(
     schedule: ContactSchedule,
     places: FloatArray,
     jumps: tuple[Jump, ...],
+    shortest: float,
 ) -> TimedMotion | None:
     """The motion with contacts at places (n_contacts, 3) m and the flights' own durations.
 
     Found in steps, each from the motion and the durations that the one before found; of half the
-    length where none are found. Most need no more than one.
+    length where none are found. Most need no more than one. shortest: share of the way of a step.
     """
     first, poses = start.motion, start
     motion, stretches = first, tuple(Stretch(j.take_off, j.landing, 1.0) for j in jumps)
@@ -130,7 +133,7 @@ def _timed(
         found = find_durations(poses, carried, to, flights)
         if found is None:
             length /= 2.0
-            if length < MIN_LENGTH:
+            if length < shortest:
                 return None
             continue
         done, motion = done + length, found.motion
