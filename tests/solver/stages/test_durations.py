@@ -169,13 +169,13 @@ def test_far_landings_have_durations_too(forward: float, up: float) -> None:
 
 @pytest.mark.slow
 def test_a_set_of_ever_farther_landings_flies_evenly_longer() -> None:
-    """Variants beside each other must look it: none of 15 cm more leaps up."""
-    distances = np.arange(0.6, 1.96, 0.15)
+    """Variants beside each other must look it: none of 30 cm more leaps up."""
+    distances = np.arange(0.6, 1.96, 0.3)
     made = [set_up(broad_jump(), to(float(forward))).schedule.flights for forward in distances]
     flights = np.array([flight[0].end - flight[0].start for flight in made])
     growth = np.diff(flights)
     assert growth.min() > 0.0, flights
-    assert growth.max() < 0.06, flights  # 15 cm at the fall's own sqrt: 0.04 s here
+    assert growth.max() < 0.12, flights  # 30 cm at the fall's own sqrt: 0.08 s here
 
 
 def test_a_flight_that_the_range_begins_in_has_no_push_to_change() -> None:
