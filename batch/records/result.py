@@ -43,9 +43,8 @@ class CellResult:
 
     sentence: why it is not done, for people; empty where it is. headline: of the report. seconds:
     of "fit", "solve", "report" and "total". figures: numbers by names with their units. values:
-    what the recipe's ranges were for it. clip, recipe: as the
-    manifest names them. files: what lies in the
-    folder beside result.json; sizes: theirs, bytes, which older results do not tell.
+    what the recipe's ranges were for it. clip, recipe: as the manifest names them. files: what lies
+    in the folder beside result.json; sizes: theirs, bytes, which older results do not tell.
     """
 
     cell: str
