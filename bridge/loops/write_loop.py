@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -22,7 +21,8 @@ from ..armature.played import scene_copy
 from ..armature.pose_basis import carrier_of, pose_bases, with_ancestors
 from ..armature.poses import Poses, metres_per_unit
 from ..armature.steady_joints import steady_bases
-from ..armature.write import remove, remove_other_rotations, rotation_channel
+from ..armature.write import remove_other_rotations, rotation_channel
+from ..companions.found import Companions, found_companions, holders_of
 from ..controls.control_rig import (
     ControlRig,
     control_poses,
@@ -33,15 +33,24 @@ from ..controls.driven import is_driven
 from ..controls.kept import KeptByControls, kept_by
 from ..controls.targets import targets_of
 from ..fake_users import guard
-from ..keys.bezier_keys import splice_bezier
 from ..properties.settings import settings_of
 from ..rows.choices import LoopRoot
 from ..takes.owned import owned_by, steady_channels
 from ..takes.takes import derive, free_name, root_of
 from ..takes.write_result import forget_copied
-from .cyclic_keys import cyclic_keys
+from .company import keep_followers
+from .cyclic_keys import repeat, write_cyclic
 
 _TRANSFORMS = ("location", "rotation_", "scale", "delta_")
+
+
+@dataclass(frozen=True)
+class WrittenLoop:
+    """What was done to write a loop. controls: how near they bring the bodies to it, where controls
+    pose them. companions: the helper bones that are kept on the body."""
+
+    controls: KeptByControls | None
+    companions: Companions
 
 
 @dataclass(frozen=True)
@@ -95,13 +104,13 @@ def write_loop(
     slot: str | None,
     *,
     name: str,
-) -> Incremental[tuple[bpy.types.Action, KeptByControls | None]]:
+) -> Incremental[tuple[bpy.types.Action, WrittenLoop]]:
     """Write a loop as a copy of the recording's action, in slices; it is not assigned.
 
-    What carries the body without being of it holds still as in the cycle's first frame. Other
-    channels keep their shape within the cycle, and repeat; bones among them, such as fingers, give
-    up evenly what they end away from their start. Returns how near controls bring the bodies to it,
-    where such pose them. Raises NoControls.
+    What carries the body, or helper bones, without being of it holds still as in the cycle's first
+    frame. Helper bones stay on the body. Other channels keep their shape within the cycle, and
+    repeat; bones among them, such as fingers, give up evenly what they end away from their start.
+    Raises NoControls.
     """
     showing = partial(showing_action, armature, recorded)
     frames, bodies = loop.track.frames, loop.track.bones
@@ -109,13 +118,24 @@ def write_loop(
     rig = None
     if is_driven(armature, bodies):
         rig = yield from found_controls(armature, bodies, frames, showing)
+    take = fcurves.holder_in(recorded, slot)
+    assert take is not None
+    apart = () if rig is None else tuple(rig.used)
+    company = yield from found_companions(armature, take, bodies, apart, showing)
+    company = replace(company, root=None)
     action = scene_copy(armature, recorded, name)
     forget_copied(action)
     whole = False
     try:
         curves = fcurves.holder_in(action, slot)
         assert curves is not None
-        _settle_others(armature, curves, loop, bodies if rig is None else rig.controls)
+        _settle_others(
+            armature,
+            curves,
+            loop,
+            held={*with_ancestors(armature, bodies), *holders_of(armature, company, bodies)},
+            written={*(bodies if rig is None else rig.controls), *company.bones},
+        )
         if rig is None:
             steady = yield from steady_bases(armature, poses, bodies, frames, showing)
             yield from _write_bodies(armature, curves, loop, poses, steady)
@@ -123,8 +143,9 @@ def write_loop(
             yield from _write_controls(rig, action, curves, loop)
         if loop.root is not None and (rig is None or loop.root.name not in rig.carriers):
             _write_root(armature, curves, loop.root, loop, poses)
+        company = yield from keep_followers(armature, action, curves, company, frames, poses)
         for curve in all_curves(action):
-            _repeat(curve)
+            repeat(curve)
         action.use_frame_range = action.use_cyclic = True
         action.frame_start, action.frame_end = frames[[0, -1]].tolist()
         note_take(armature, action, recorded)
@@ -136,23 +157,23 @@ def write_loop(
         if not whole:  # cancelled in between: half an action is of no use to anybody
             bpy.data.actions.remove(action)
     guard(recorded)
-    return action, kept
+    return action, WrittenLoop(kept, company)
 
 
 def write_loop_incrementally(
     armature: bpy.types.Object, loop: Loop
-) -> Incremental[tuple[bpy.types.Action, KeptByControls | None]]:
+) -> Incremental[tuple[bpy.types.Action, WrittenLoop]]:
     """Write a loop as a new action, which is assigned and knows its recording.
 
     Before the last slice the armature is as it was. Returns and raises as `write_loop`.
     """
     original, slot = present(recorded_action(armature)), fcurves.slot_identifier(armature)
     name = free_name(root_of(original).name, "loop")
-    action, kept = yield from write_loop(armature, loop, original, slot, name=name)
+    action, written = yield from write_loop(armature, loop, original, slot, name=name)
     derive(action, original, armature)
     show(armature, action, slot)
     settings_of(armature).adapted = action
-    return action, kept
+    return action, written
 
 
 def _write_bodies(
@@ -168,14 +189,14 @@ def _write_bodies(
     for channel in steady_channels(armature, curves, loop.track.bones, steady):
         basis = bases[channel.bone]
         values = channel.values(armature, basis, channel.at_rest(armature)[None])
-        _write(curves, channel.path, channel.bone, frames, values, goes_on=False)
+        write_cyclic(curves, channel.path, channel.bone, frames, values, goes_on=False)
     for bone in loop.track.bones:
         _write_rotation(curves, bones[bone], frames, bases[bone])
         yield None
     carrier = carrier_of(armature_data(armature).bones[loop.track.bones[0]]).name
     places, goes_on = bases[carrier][:, :3, 3], loop.travels and loop.root is None
     path = bones[carrier].path_from_id("location")
-    _write(curves, path, carrier, frames, places, goes_on=goes_on)
+    write_cyclic(curves, path, carrier, frames, places, goes_on=goes_on)
 
 
 def _write_controls(
@@ -202,7 +223,7 @@ def _write_controls(
         if goes_on:
             values = np.concatenate([values[:-1], values[:1]])
             values += np.linspace(0.0, 1.0, len(frames))[:, None] * travel[channel.bone]
-        _write(curves, channel.path, channel.bone, frames, values, goes_on=goes_on)
+        write_cyclic(curves, channel.path, channel.bone, frames, values, goes_on=goes_on)
         yield None
 
 
@@ -225,17 +246,21 @@ def _held(poses: Poses) -> Poses:
 
 
 def _settle_others(
-    armature: bpy.types.Object, curves: fcurves.CurveHolder, loop: Loop, written: Iterable[str]
+    armature: bpy.types.Object,
+    curves: fcurves.CurveHolder,
+    loop: Loop,
+    *,
+    held: set[str],
+    written: set[str],
 ) -> None:
-    """Hold the object, and bones that carry some of the body and are not written, as at the cycle's
-    first frame; cut all else, and close what other bones do."""
+    """Hold the object, and bones that carry some of the figure and are not written, as at the
+    cycle's first frame; cut all else, and close what other bones do."""
     first, last = (float(loop.track.frames[k]) for k in (0, -1))
-    carriers = set(with_ancestors(armature, loop.track.bones)) - set(written)
-    held = tuple(pose_of(armature).bones[name].path_from_id() for name in carriers)
+    paths = tuple(pose_of(armature).bones[name].path_from_id() for name in held - written)
     for curve in list(curves.fcurves):
         if not len(curve.keyframe_points):
             continue
-        if curve.data_path.startswith(_TRANSFORMS) or _is_of(curve, held):
+        if curve.data_path.startswith(_TRANSFORMS) or _is_of(curve, paths):
             values = np.array([curve.evaluate(first)])
             for modifier in list(curve.modifiers):
                 curve.modifiers.remove(modifier)
@@ -267,26 +292,7 @@ def _write_rotation(
     remove_other_rotations(curves, bone, used)
     near = np.array(getattr(bone, used))
     values = channels(proper(basis[:, :3, :3]), bone.rotation_mode, near)
-    _write(curves, bone.path_from_id(used), bone.name, frames, values, goes_on=False)
-
-
-def _write(
-    curves: fcurves.CurveHolder,
-    path: str,
-    bone: str,
-    frames: FloatArray,
-    values: FloatArray,
-    *,
-    goes_on: bool,
-) -> None:
-    """Make keys of values (T, n) the only ones of a bone's path. goes_on: with each repetition."""
-    remove(curves, path)
-    if not goes_on:
-        values = np.concatenate([values[:-1], values[:1]])
-    splice_bezier(curves, path, cyclic_keys(frames, values), np.empty(0), bone)
-    if goes_on:
-        for curve in (c for c in curves.fcurves if c.data_path == path):
-            _repeat(curve, goes_on=True)
+    write_cyclic(curves, bone.path_from_id(used), bone.name, frames, values, goes_on=False)
 
 
 def _write_root(
@@ -308,13 +314,4 @@ def _write_root(
     along = np.linalg.solve(to_bone, loop.travel / metres_per_unit(current_scene()))
     values = rest + np.linspace(0.0, 1.0, len(frames))[:, None] * along
     path = pose_of(armature).bones[root.name].path_from_id("location")
-    _write(curves, path, root.name, frames, values, goes_on=True)
-
-
-def _repeat(curve: bpy.types.FCurve, *, goes_on: bool = False) -> None:
-    """Let a curve repeat before and after its keys; one that has modifiers stays as it is."""
-    if len(curve.modifiers) or len(curve.keyframe_points) < 2:
-        return
-    cycles = curve.modifiers.new("CYCLES")
-    mode = "REPEAT_OFFSET" if goes_on else "REPEAT"
-    cycles.mode_before = cycles.mode_after = mode  # type: ignore[attr-defined]
+    write_cyclic(curves, path, root.name, frames, values, goes_on=True)

@@ -31,7 +31,7 @@ if TYPE_CHECKING:  # as in clip.py
     import bpy
 
     from ...bridge.controls.control_rig import ControlRig
-    from ...bridge.controls.kept import KeptByControls
+    from ...bridge.loops.write_loop import WrittenLoop
     from ...bridge.properties.of_actions.known_contacts import SolvedContacts
     from ...bridge.takes.plan import AdaptedMotion
     from ...bridge.takes.span import WrittenTake
@@ -100,7 +100,7 @@ class _Written:
     performer: bpy.types.Object
     action: bpy.types.Action
     schedule: ContactSchedule
-    take: WrittenTake | KeptByControls | None
+    take: WrittenTake | WrittenLoop | None
 
 
 @dataclass(frozen=True)
@@ -199,7 +199,7 @@ class Outputs:
             _save_blend(self.outbox.path(BEST))
         self._write_report(self._report(written), written)
 
-    def _report(self, written: WrittenTake | KeptByControls | None) -> Report:
+    def _report(self, written: WrittenTake | WrittenLoop | None) -> Report:
         """With the stages that have ended, and the blends that were written."""
         from ...bridge.takes.span import WrittenTake
 
@@ -218,7 +218,7 @@ class Outputs:
             return ()
         return complete(missed_contacts(made.performer, made.schedule, self.result.traces()))
 
-    def _write_report(self, report: Report, written: WrittenTake | KeptByControls | None) -> None:
+    def _write_report(self, report: Report, written: WrittenTake | WrittenLoop | None) -> None:
         from ..words.take_text import take_lines, take_record
 
         records: dict[str, object] = {} if written is None else {"take": take_record(written)}
@@ -243,7 +243,7 @@ class Outputs:
         armature, track = self.clip.armature, self.result.track
         schedule = self.result.schedule
         name = f"{recorded.name} {called}"
-        written: WrittenTake | KeptByControls | None = None
+        written: WrittenTake | WrittenLoop | None = None
         if self.result.subject.problem.requests.body.limbs:
             armature, track, turns = build_reproportioned(self.result.recording, track)
             schedule = in_new_axes(schedule, turns)

@@ -7,6 +7,7 @@ from math import degrees, hypot
 from ...bridge.companions.found import Companions
 from ...bridge.controls.aimed import Aimed
 from ...bridge.controls.kept import KeptByControls
+from ...bridge.loops.write_loop import WrittenLoop
 from ...bridge.polish.pins import MovedPin
 from ...bridge.polish.put_on import PlacedPolish
 from ...bridge.takes.span import WrittenTake
@@ -18,7 +19,7 @@ _STRAIGHT = 0.05  # degrees
 
 
 def take_lines(
-    written: WrittenTake | KeptByControls | None, roles: Mapping[str, str] | None = None
+    written: WrittenTake | WrittenLoop | None, roles: Mapping[str, str] | None = None
 ) -> list[str]:
     """Lines for sidebar and report; none where the adapted frames are alone.
 
@@ -26,16 +27,18 @@ def take_lines(
     """
     if written is None:
         return []
-    if isinstance(written, KeptByControls):
-        return list(_controls(written))
+    if isinstance(written, WrittenLoop):
+        controls = () if written.controls is None else _controls(written.controls)
+        return [*controls, *_companions(written.companions)]
     return list(_lines(written, roles or {}))
 
 
-def take_record(written: WrittenTake | KeptByControls) -> dict[str, object]:
+def take_record(written: WrittenTake | WrittenLoop) -> dict[str, object]:
     """What report.json holds of it; of a loop, which is no part of its take, how near controls come
-    to it. Frames are the result's, lengths m, angles degrees."""
-    if isinstance(written, KeptByControls):
-        return {"controls": asdict(written)}
+    to it, and its helper bones. Frames are the result's, lengths m, angles degrees."""
+    if isinstance(written, WrittenLoop):
+        kept = {"bones_kept_on_body": dict(written.companions.followers)}
+        return kept if written.controls is None else kept | {"controls": asdict(written.controls)}
     span, move = written.span, written.moved
     record: dict[str, object] = {
         "adapted_frames": [span.first, span.last],

@@ -80,10 +80,10 @@ def test_controls_repeat_and_the_feet_go_on(root: LoopRoot, local: bool) -> None
     walk(rig, drift=0.05)
     take, slot = current_action(rig), fcurves.slot_identifier(rig)
     loop = Loop.of(rig, cycle, root)
-    action, kept = complete(write_loop(rig, loop, take, slot, name="Loop"))
+    action, written = complete(write_loop(rig, loop, take, slot, name="Loop"))
     fcurves.assign(rig, action, slot)
-    assert kept is not None
-    assert kept.kept
+    assert written.controls is not None
+    assert written.controls.kept
     keyed = {re.findall(r'"(.*?)"', curve.data_path)[0] for curve in curves_of(rig)}
     assert keyed >= CONTROLS
     assert not keyed & {"thigh.L", "shin.R", "foot.L"}

@@ -9,44 +9,15 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import current_action
 from hangtime.bridge.armature import fcurves
-from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.read import record
-from hangtime.bridge.loops.write_loop import Loop, write_loop
+from hangtime.bridge.loops.write_loop import Loop
 from hangtime.bridge.rows.choices import LoopRoot
 from hangtime.solver.data.faults import NoRootBone
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.tests.blender.helpers import rigs
+from hangtime.tests.blender.helpers.figures.cycle import FRAMES, TRAVEL, cycle, looped
 
-FRAMES = np.arange(3.0, 24.0)
-TRAVEL = np.array([0.4, 2.0, 0.0])
 CLOSE = 2e-5  # m and rad; single precision
-
-
-def cycle(armature: bpy.types.Object) -> PoseTrack:
-    """Every bone swings once, and the pelvis sways as it goes."""
-    phase = np.linspace(0.0, 1.0, len(FRAMES))
-    about = 2.0 * np.pi * phase
-    rest = record(armature, FRAMES[:1])
-    turned = []
-    for i, bone in enumerate(rigs.MOVING):
-        amplitudes = np.array([[0.3, 0.1 * i, -0.2], [0.1, 0.3, 0.05 * i]])
-        swings = np.sin(about)[:, None] * amplitudes[0] + np.cos(about)[:, None] * amplitudes[1]
-        turns = np.array([rigs.turn_by(swing) for swing in swings])
-        turned.append(turns @ rest.rotations[0, rest.index(bone)])
-    sway = 0.05 * np.stack([np.sin(about), np.cos(about), np.cos(2.0 * about)], axis=1)
-    head = np.array([0.5, 0.2, 1.1]) + phase[:, None] * TRAVEL + sway
-    return PoseTrack(FRAMES, rigs.MOVING, np.stack(turned, axis=1), head)
-
-
-def looped(armature: bpy.types.Object, root: LoopRoot) -> PoseTrack:
-    track = cycle(armature)
-    take, slot = current_action(armature), fcurves.slot_identifier(armature)
-    loop = Loop.of(armature, track, root)
-    action, _ = complete(write_loop(armature, loop, take, slot, name="Loop"))
-    fcurves.assign(armature, action, slot)
-    assert action.use_cyclic
-    assert tuple(action.frame_range) == (FRAMES[0], FRAMES[-1])
-    return track
 
 
 def made(mode: str = "QUATERNION", *, root: bool = True) -> bpy.types.Object:
@@ -70,7 +41,7 @@ def shown(armature: bpy.types.Object, track: PoseTrack, frames: np.ndarray) -> n
 @pytest.mark.parametrize("mode", ["QUATERNION", "XYZ", "AXIS_ANGLE"])
 def test_every_repetition_goes_on_from_the_last(mode: str) -> None:
     armature = made(mode)
-    track = looped(armature, LoopRoot.HIPS)
+    track, _ = looped(armature, LoopRoot.HIPS)
     seen = record(armature, FRAMES)
     bones = [seen.index(bone) for bone in track.bones]
     np.testing.assert_allclose(seen.heads[:, bones[0]], track.root_head, atol=CLOSE)
@@ -88,7 +59,7 @@ def test_what_moves_a_joint_holds_still() -> None:
     for frame in range(1, 40):
         thigh.scale.y = 1.0 + 0.1 * np.sin(0.3 * frame)
         thigh.keyframe_insert("scale", frame=frame)
-    track = looped(armature, LoopRoot.HIPS)
+    track, _ = looped(armature, LoopRoot.HIPS)
     heads = shown(armature, track, FRAMES)
     thighs = (heads[:, track.bones.index(bone)] for bone in ("shin", "thigh"))
     assert np.ptp(np.linalg.norm(np.subtract(*thighs), axis=1)) < CLOSE
@@ -96,7 +67,7 @@ def test_what_moves_a_joint_holds_still() -> None:
 
 def test_speed_goes_on_across_the_seam() -> None:
     armature = made()
-    track = looped(armature, LoopRoot.HIPS)
+    track, _ = looped(armature, LoopRoot.HIPS)
     step = 0.05
     at = shown(armature, track, FRAMES[-1] + step * np.arange(-2.0, 3.0))
     before = (3.0 * at[2] - 4.0 * at[1] + at[0]) / (2.0 * step)
@@ -106,7 +77,7 @@ def test_speed_goes_on_across_the_seam() -> None:
 
 def test_in_place_leaves_the_steady_travel_out() -> None:
     armature = made()
-    track = looped(armature, LoopRoot.IN_PLACE)
+    track, _ = looped(armature, LoopRoot.IN_PLACE)
     steady = np.linspace(0.0, 1.0, len(FRAMES))[:, None] * TRAVEL
     first = shown(armature, track, FRAMES)
     np.testing.assert_allclose(first[:, 0], track.root_head - steady, atol=CLOSE)
@@ -116,7 +87,7 @@ def test_in_place_leaves_the_steady_travel_out() -> None:
 
 def test_root_bone_carries_the_travel_at_a_steady_speed() -> None:
     armature = made()
-    track = looped(armature, LoopRoot.ROOT_BONE)
+    track, _ = looped(armature, LoopRoot.ROOT_BONE)
     np.testing.assert_allclose(shown(armature, track, FRAMES)[:, 0], track.root_head, atol=CLOSE)
     frames = np.arange(FRAMES[0], FRAMES[-1] + 30.0)
     seen = record(armature, frames)
