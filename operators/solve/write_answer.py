@@ -125,9 +125,9 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     looped, options = loop_options(settings_of(armature)), result_options(settings_of(armature))
     if looped is not None:
         loop = Loop.of(armature, answer.track, looped.root)
-        action, written = yield from write_loop_incrementally(armature, loop)
+        action, made = yield from write_loop_incrementally(armature, loop)
         keep(action, answer.traces, stood)
-        _note(armature, armature, action, answer, take_lines(written))
+        _note(armature, armature, action, answer, take_lines(made))
         if loop.travels:
             complete(_tell_missed(armature, armature, action, answer))
         mark_contacts(armature, action, answer, options)

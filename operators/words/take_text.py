@@ -37,8 +37,10 @@ def take_record(written: WrittenTake | WrittenLoop) -> dict[str, object]:
     """What report.json holds of it; of a loop, which is no part of its take, how near controls come
     to it, and its helper bones. Frames are the result's, lengths m, angles degrees."""
     if isinstance(written, WrittenLoop):
-        kept = {"bones_kept_on_body": dict(written.companions.followers)}
-        return kept if written.controls is None else kept | {"controls": asdict(written.controls)}
+        kept: dict[str, object] = {"bones_kept_on_body": dict(written.companions.followers)}
+        if written.controls is not None:
+            kept["controls"] = asdict(written.controls)
+        return kept
     span, move = written.span, written.moved
     record: dict[str, object] = {
         "adapted_frames": [span.first, span.last],
