@@ -25,10 +25,9 @@ from .records.faults import BatchFault
 from .records.locks import batch_lock
 from .records.manifest import BatchSettings, CellPlan, Manifest, Output, write_manifest
 from .records.result import WORSE, State
-from .running.memory import MemoryWatch
 from .running.progress import Progress
 from .running.reasons import counted, told_together
-from .running.runner import LocalRun
+from .running.runner import CELL_LIMIT_S, LocalRun
 from .running.workers import worker_command
 
 RUN = "run"
@@ -133,6 +132,13 @@ def _add_planning(each: argparse.ArgumentParser, name: str) -> None:
         "--jobs", type=_count, default=cores(), metavar="N", help="at once (default: the cores)"
     )
     each.add_argument(
+        "--cell-limit",
+        type=_positive,
+        default=CELL_LIMIT_S,
+        metavar="S",
+        help=f"seconds after which a cell has failed (default: {CELL_LIMIT_S:g}; not with --dask)",
+    )
+    each.add_argument(
         "--dask", metavar="ADDRESS", help="a Dask scheduler, or its file, whose workers solve"
     )
     each.add_argument(
@@ -196,7 +202,9 @@ def _solve(options: argparse.Namespace, manifest: Manifest, progress: Progress) 
         if in_blender:
             require_blender(in_blender[0])  # told before anything is solved
         command = worker_command(blender=bool(in_blender))
-        LocalRun(folder, manifest, options.jobs, command, progress, MemoryWatch()).run()
+        LocalRun(
+            folder, manifest, options.jobs, command, progress, cell_limit=options.cell_limit
+        ).run()
         return
     try:
         from .cluster.dispatch import run_on_dask

@@ -154,6 +154,11 @@ class Attempts:
         self.waiting.move_to_end(pair, last=False)
         return True
 
+    def give_up(self, attempt: Attempt) -> None:
+        """An attempt is not made again, and its cell has ended with it."""
+        self._stop(attempt)
+        self.ended.add(attempt.plan.cell)
+
     def _stop(self, attempt: Attempt) -> None:
         self.running.remove(attempt)
         self.on.subtract((attempt.worker, pair_of(attempt.plan)))

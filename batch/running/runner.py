@@ -22,13 +22,15 @@ from .workers import Message, WorkerProcess
 MOST_TRIES = 2  # of a cell whose worker ends
 MOST_STILLBORN = 2  # workers in a row that end before they began
 POLL_S = 0.5
+CELL_LIMIT_S = 3600.0  # a cell takes seconds, or minutes where its clip does
 
 
 @dataclass
 class LocalRun:
     """One run of a batch's cells that have no final result.
 
-    command: that starts a worker. jobs: how many work at once. The caller holds the folder's lock.
+    command: that starts a worker. jobs: how many work at once. cell_limit: s, after which a cell
+    has failed. The caller holds the folder's lock.
     """
 
     folder: Path
@@ -37,6 +39,7 @@ class LocalRun:
     command: Sequence[str]
     progress: Progress
     memory: MemoryWatch = field(default_factory=MemoryWatch)
+    cell_limit: float = CELL_LIMIT_S
 
     def __post_init__(self) -> None:
         waiting = [c for c in self.manifest.cells if lasting_result(self.folder, c.cell) is None]
@@ -54,6 +57,7 @@ class LocalRun:
             while not self._attempts.over:
                 self._hand_out()
                 self._hear()
+                self._end_late()
         finally:
             for worker in self._workers:
                 worker.end()
@@ -87,6 +91,8 @@ class LocalRun:
         except Empty:
             self.progress.tick()
             return
+        if worker not in self._workers:
+            return  # last words of one that was late
         if message is None:
             self._died(worker)
             return
@@ -130,4 +136,24 @@ class LocalRun:
                 f"The worker that solved it ended {MOST_TRIES} times, the last time {how}; where "
                 "the system has ended it for want of memory, use fewer --jobs."
             )
+            self.progress.ended(attempt.plan, write_failure(self.folder, cell, sentence))
+
+    def _end_late(self) -> None:
+        """Ends who has been at a cell for longer than the limit; the next run tries it again."""
+        now = monotonic()
+        for worker, attempt in list(self._at.items()):
+            if now - attempt.began <= self.cell_limit:
+                continue
+            del self._at[worker]
+            self._workers.remove(worker)
+            worker.end()
+            cell = attempt.plan.cell
+            if lasting_result(self.folder, cell) is not None:
+                self._ended(attempt)  # it had finished
+                continue
+            sentence = (
+                f"It took longer than {self.cell_limit:g} s and was ended; give it more by "
+                "--cell-limit, or leave it out."
+            )
+            self._attempts.give_up(attempt)
             self.progress.ended(attempt.plan, write_failure(self.folder, cell, sentence))

@@ -136,6 +136,16 @@ def test_what_failed_by_no_fault_of_the_input_is_tried_again_by_the_next_run(
     assert states(folder) == {"a.bvh": State.FAILED, "b.bvh": State.DONE}
 
 
+def test_a_cell_that_takes_too_long_is_ended_and_told_and_the_others_go_on(tmp_path: Path) -> None:
+    planned(tmp_path, {"a.bvh": "sleep 600", "b.bvh": "sleep 0", "c.bvh": "sleep 0.01"})
+    folder = tmp_path / "out"
+    told = run(folder, jobs=1, cell_limit=0.5)
+    assert states(folder) == {"a.bvh": State.FAILED, "b.bvh": State.DONE, "c.bvh": State.DONE}
+    assert "It took longer than 0.5 s and was ended" in told
+    assert "3 of 3 cells" in told
+    assert len(lines(folder, "begin")) == 3  # each once
+
+
 def test_a_cell_that_would_not_fit_into_memory_waits_for_the_other(tmp_path: Path) -> None:
     planned(tmp_path, {f"{i}.bvh": "sleep 0.05" for i in range(4)})
     folder = tmp_path / "out"
