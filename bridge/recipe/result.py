@@ -41,13 +41,12 @@ def require_return_after(options: ResultOptions, last: float) -> None:
         raise ReturnTooEarly(frame, last)
 
 
-def require_return_within(options: ResultOptions, last: float, end: float) -> None:
+def require_return_within(options: ResultOptions, end: float) -> None:
     """Raises ReturnTooLate where the take is to be back by a frame that it does not have: all of
-    the way back would be squeezed into what is left. last: the last that is adapted. end: the
-    take's."""
+    the way back would be squeezed into what is left. end: the take's last."""
     frame = options.return_frame
     if options.after is After.RETURN and frame is not None and frame > end:
-        raise ReturnTooLate(frame, last, end)
+        raise ReturnTooLate(frame, end)
 
 
 RESULT = Kind(

@@ -12,7 +12,7 @@ from ...bridge.recipe.export import ExportOptions
 from ...bridge.recipe.keys import KeyOptions, require_every_frame
 from ...bridge.recipe.objects import placed_objects
 from ...bridge.recipe.problem import PARTS, STATURE, Recipe, parse_recipe, read_recipe_text
-from ...bridge.recipe.result import ResultOptions, require_return_after
+from ...bridge.recipe.result import ResultOptions
 from ...solver.data.faults import BadRecipe, Fault, NoSolution, OptionNotTaken
 from ...solver.data.problem import MotionProblem
 from ...solver.doctor.repairs import Repairs
@@ -171,7 +171,6 @@ def adapt(options: argparse.Namespace) -> None:
     with Outbox(options.out) as outbox:
         loaded = load(clip, problem, stages, recipe.repairs)
         require_apart(linked_files(), options.out, export)
-        require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
         require_place(loaded, wanted, recipe.loop)
         require_exported(loaded, options.out, export)
         _ask_about(problem, loaded, recipe.repairs)

@@ -13,7 +13,7 @@ import numpy as np
 from ...bridge.recipe.export import ExportOptions
 from ...bridge.recipe.keys import KeyOptions
 from ...bridge.recipe.loop import LoopOptions
-from ...bridge.recipe.result import ResultOptions, require_return_within
+from ...bridge.recipe.result import ResultOptions, require_return_after, require_return_within
 from ...bridge.rows.choices import FileFormat, KeyChoice, LoopRoot, WrittenAs
 from ...solver.data.faults import OutputNotWritable, WouldReplaceInput
 from ...solver.data.reports.keys import KeysReport
@@ -76,7 +76,8 @@ def _exported(folder: Path, export: ExportOptions) -> Path:
 
 
 def require_place(clip: LoadedClip, wanted: ResultOptions, loop: LoopOptions | None) -> None:
-    """Before a solve takes its seconds. Raises NoNewSlot, NoRootBone, ReturnTooLate."""
+    """Before a solve takes its seconds. Raises NoNewSlot, NoRootBone, ReturnTooEarly,
+    ReturnTooLate, UnknownPhase."""
     from ...bridge.armature.read import last_keyed
     from ...bridge.loops.write_loop import root_bone
     from ...bridge.takes.write_result import require_slot
@@ -86,8 +87,8 @@ def require_place(clip: LoadedClip, wanted: ResultOptions, loop: LoopOptions | N
     apart = loop is not None or clip.subject.problem.requests.body.limbs
     if apart:  # those are actions of their own
         return
-    last = float(clip.subject.recording.frames[-1])
-    require_return_within(wanted, last, last_keyed(clip.armature))
+    require_return_after(wanted, float(clip.subject.edited().recording.frames[-1]))
+    require_return_within(wanted, last_keyed(clip.armature))
     if wanted.written_as is WrittenAs.SLOT:
         require_slot(clip.armature)
 

@@ -198,7 +198,6 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     recording = yield from read_wanted(armature)
     _require_analysed(armature, recording)
     options = result_options(settings)
-    require_return_after(options, span_of(settings, recording)[1])
     _require_loopable(armature)
     aimed = yield from require_writable(armature, recording, span_of(settings, recording))
     scene = yield from read_surfaces(armature, recording.frames)
@@ -207,10 +206,11 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     require_unaimed(problem.requests, aimed, recording.bones)
     apart = loop_options(settings) is not None or problem.requests.body.limbs
     if not apart:  # those are actions of their own
-        last = span_of(settings, recording)[1]
+        if not problem.pins_alone:  # of these it is known where the range that is solved ends
+            require_return_after(options, span_of(settings, recording)[1])
         with showing_recorded(armature)():
             end = last_keyed(armature)
-        require_return_within(options, last, end)
+        require_return_within(options, end)
         if options.written_as is WrittenAs.SLOT:
             require_slot(armature)
     return Asked(armature.name, armature.session_uid, recording, problem, scene, aimed)

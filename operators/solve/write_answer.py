@@ -29,7 +29,7 @@ from ...bridge.properties.of_actions.known_contacts import SolvedContacts, keep_
 from ...bridge.properties.of_actions.shown_overlaps import store_overlaps
 from ...bridge.properties.of_actions.shown_times import store_times
 from ...bridge.properties.settings import action_settings, settings_of
-from ...bridge.recipe.result import ResultOptions
+from ...bridge.recipe.result import ResultOptions, require_return_after
 from ...bridge.rows.choices import After, ContactMarkers, WrittenAs
 from ...bridge.rows.phases import roles
 from ...bridge.scene.played_end import play_longer
@@ -94,7 +94,7 @@ MARKERS_LEFT_OUT = (
 
 def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
     """Writes an answer as a new action; returns how it went. Raises RateChanged,
-    ChangedMeanwhile.
+    ChangedMeanwhile, ReturnTooEarly.
 
     Surfaces that changed meanwhile do not void it: it says that it is not about them any more.
     """
@@ -120,7 +120,7 @@ def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
 
 
 def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Incremental[str]:
-    """The answer as a new action of the armature."""
+    """The answer as a new action of the armature. Raises ReturnTooEarly."""
     stood = armature.matrix_world.copy()
     looped, options = loop_options(settings_of(armature)), result_options(settings_of(armature))
     if looped is not None:
@@ -134,6 +134,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         keep_contacts(action, _solved_contacts(asked, answer))
         note_made(armature, action, None, 0)
         return f"Wrote the loop {action.name}"
+    require_return_after(options, answer.report.times.recorded_frame[-1])
     renewal = Renewal.of(armature)
     motion = AdaptedMotion(
         answer.track,

@@ -123,6 +123,16 @@ class MotionProblem:
         known = replace(self, pins=(), scene=(), skin=None, requests=Requests(), bones=bones)
         return repr((known, self.skin and self.skin.digest()))
 
+    @property
+    def pins_alone(self) -> bool:
+        """Whether nothing but pins is asked for, of a recording as it was found: then those of its
+        frames alone may be solved that the pins are about (worker/edited_part.py)."""
+        alone = replace(self.requests, solution=Requests().solution) == Requests()
+        moving = any(thing.moves for thing in self.scene)
+        mended = bool(self.mend) or any((*self.drift, self.rise))
+        corrected = bool(self.contacts or self.added)
+        return bool(self.pins) and alone and not (self.loop or moving or mended or corrected)
+
     def weighing_torques(self) -> "MotionProblem":
         """The same with changes of torques weighed beside those of the movement."""
         solution = replace(self.requests.solution, method=Method.IMPLICIT_TORQUES)

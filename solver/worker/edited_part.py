@@ -10,13 +10,11 @@ what the recording was before.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from ..analysis.analyse import Analysis, part_of
 from ..analysis.pinned_places import phase_of
 from ..data.contacts import ContactSchedule, Phase, PhaseKind
 from ..data.problem import MotionProblem, Pin
-from ..data.requests import Requests
 
 PUSH = 0.8  # s before a take-off, which a crouch and the swing of the arms take
 REST = 1.2  # s after a landing, by which a jumper stands again
@@ -37,11 +35,7 @@ def edited_part(analysis: Analysis, problem: MotionProblem) -> Analysis:
 
 
 def _span(schedule: ContactSchedule, problem: MotionProblem) -> tuple[float, float] | None:
-    alone = replace(problem.requests, solution=Requests().solution) == Requests()
-    moving = any(thing.moves for thing in problem.scene)
-    mended = bool(problem.mend) or any((*problem.drift, problem.rise))
-    corrected = bool(problem.contacts or problem.added)
-    if problem.loop or moving or mended or corrected or not alone or not problem.pins:
+    if not problem.pins_alone:
         return None
     stances = [phase for phase in schedule.phases if phase.kind is PhaseKind.GROUND]
     pinned = [stances.index(phase_of(pin, schedule)) for pin in problem.pins]

@@ -265,8 +265,8 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     faults.ReturnTooEarly: "The take is to be back by frame {frame:g}, but is adapted until frame "
     "{last:g}; choose a later frame.",
     faults.ReturnTooLate: "The take is to be back by frame {frame:g}, but its last frame is "
-    "{end:g}; choose one up to that and after frame {last:g}, the last that is adapted, or let "
-    "what follows be carried along.",
+    "{end:g}; choose one up to that and after those that are adapted, or let what follows be "
+    "carried along.",
     faults.NoNewSlot: "The result cannot be a new slot of “{action}”: {why}. Choose New "
     "Action under Written As.",
     faults.SameUsdNames: "“{first_bone}” and “{second_bone}” would be one name in a USD file, "

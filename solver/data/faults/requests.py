@@ -38,11 +38,9 @@ class ReturnTooEarly(Fault):
 
 @dataclass
 class ReturnTooLate(Fault):
-    """A take is to be back where it was by a frame that it does not have. last: the last that is
-    adapted. end: the take's."""
+    """A take is to be back where it was by a frame that it does not have. end: the take's last."""
 
     frame: float
-    last: float
     end: float
 
 

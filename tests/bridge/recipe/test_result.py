@@ -46,8 +46,8 @@ def test_a_take_is_not_back_before_it_was_away() -> None:
 
 def test_a_take_is_not_back_after_its_end() -> None:
     options = ResultOptions(After.RETURN, return_frame=336.0)
-    require_return_within(options, 330.0, 336.0)
-    require_return_within(ResultOptions(After.RETURN), 330.0, 335.0)  # as soon as there is room
-    require_return_within(ResultOptions(After.CARRY, return_frame=420.0), 330.0, 336.0)
+    require_return_within(options, 336.0)
+    require_return_within(ResultOptions(After.RETURN), 335.0)  # as soon as there is room
+    require_return_within(ResultOptions(After.CARRY, return_frame=420.0), 336.0)
     with pytest.raises(ReturnTooLate):
-        require_return_within(options, 330.0, 335.0)
+        require_return_within(options, 335.0)
