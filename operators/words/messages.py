@@ -87,8 +87,8 @@ def _variant(fault: Fault) -> int:
         case faults.JoinedPhase():
             return bool(fault.kept)
         case faults.UnseenSupport():
-            more = bool(fault.boxes), fault.rate is not None, fault.exchanged, fault.skidding
-            return max(i for i, each in enumerate((True, *more)) if each)
+            known = bool(fault.boxes), fault.rate is not None, fault.exchanged, fault.skidding
+            return max(i for i, each in enumerate((True, *known, fault.lying)) if each)
         case faults.UnknownObject():
             return bool(fault.known)
         case faults.ChangedMeanwhile() | faults.RateChanged():

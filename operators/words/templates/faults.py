@@ -175,6 +175,9 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
         "From frame {first:g} to {last:g} the feet that carry the body skid to another place, as "
         "none does under load, so something unseen carries it meanwhile; correct their contacts, "
         "choose frames without it, or let what they ride on be ground in the panel World.",
+        "The figure lies: another axis than Z points from its feet to its head, so the body does "
+        "not fall where neither foot touches the ground. Import the clip again with other axes, "
+        'or turn it upright (Examine, Turn Upright; up = "…" in a recipe).',
     ),
     faults.ScaledStrip: "The body falls as gravity has it at {rate} frames a second, but the scene "
     "has {scene_rate:.4g} (frames {first:g} to {last:g}), and the NLA strip “{strip}” plays its "

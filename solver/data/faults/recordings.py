@@ -243,7 +243,7 @@ class UnseenSupport(Fault):
     boxes: what would, where feet rest above the floor. rate: frames a second at which the body
     would fall as gravity has it, where the scene's, scene_rate, is another. exchanged: whether the
     legs are there, so that none of these is meant. skidding: whether feet are on the ground, and go
-    from place to place.
+    from place to place. lying: whether another axis than Z points from the feet to the head.
     """
 
     first: float
@@ -253,6 +253,7 @@ class UnseenSupport(Fault):
     scene_rate: float = 0.0
     exchanged: bool = False
     skidding: bool = False
+    lying: bool = False
 
 
 @dataclass

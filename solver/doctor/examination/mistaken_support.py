@@ -1,4 +1,5 @@
-"""Support that is unseen for legs are exchanged: no box was there, and no other clock."""
+"""Support that is unseen for the figure lies, or legs are exchanged: no box was there, and no other
+clock."""
 
 from __future__ import annotations
 
@@ -10,14 +11,21 @@ from ...data.problem import Mend
 from ...data.recording import Recording
 from ..figure import figure_of
 from ..frames.exchanges import find_exchange
+from ..upright import find_up
 
 Told = Sequence[UnseenSupport | Treadmill]
 
 
 def with_cause(told: Told, recording: Recording, chosen: Mapping[str, str]) -> Told:
-    """What is told of a recording, where legs are exchanged with that as the cause. chosen: bones
-    by parts of the body, as in a problem."""
-    legs = find_exchange(recording, figure_of(recording, chosen), Mend.LEGS) if told else None
+    """What is told of a recording, where the figure lies or legs are exchanged with that as the
+    cause. chosen: bones by parts of the body, as in a problem."""
+    unseen = [each for each in told if isinstance(each, UnseenSupport)]
+    if not unseen:
+        return told
+    figure = figure_of(recording, chosen)
+    if find_up(recording, figure) is not None:
+        return (UnseenSupport(unseen[0].first, unseen[-1].last, lying=True),)
+    legs = find_exchange(recording, figure, Mend.LEGS)
     if legs is None:
         return told
 

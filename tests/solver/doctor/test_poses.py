@@ -23,13 +23,15 @@ from hangtime.devtools.doctor.damages import (
     stretched,
 )
 from hangtime.devtools.doctor.measure import apart
-from hangtime.solver.data.problem import Mend
+from hangtime.solver.data.faults import UnseenSupport
+from hangtime.solver.data.problem import Mend, MotionProblem
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.examination.repair import repaired
 from hangtime.solver.doctor.finding import FindingKind
 from hangtime.solver.doctor.frames.spikes import find_spikes
 from hangtime.solver.doctor.repairs import Repairs, UpAxis
 from hangtime.solver.doctor.upright import find_up
+from hangtime.solver.worker.pipeline import measure
 from hangtime.tests.helpers.doctored import figure, jump, of_poses, sparse
 
 
@@ -168,3 +170,6 @@ def test_a_figure_that_lies_is_set_upright(up: UpAxis) -> None:
     assert found is not None
     assert found.remedy == Repairs(up=up)
     assert apart(repaired(damaged.recording, found.remedy), damaged.original) < 1e-9
+    (unseen,) = measure(damaged.recording, MotionProblem()).analysis.unseen
+    assert isinstance(unseen, UnseenSupport)
+    assert (unseen.lying, unseen.boxes) == (True, ())  # no box is offered
