@@ -95,10 +95,8 @@ def load(
     with stages.stage("Importing the clip"):
         armature, origin = _import(clip)
         if repairs is not None:
-            from ...bridge.properties.attached_groups import ensure_groups
             from ...bridge.repairs.placed_armature import repair
 
-            ensure_groups()
             repair(armature, repairs)
     with stages.stage("Finding contacts"):
         recording = _read(armature, problem)
@@ -121,6 +119,9 @@ def load(
 
 
 def _import(clip: Clip) -> tuple[bpy.types.Object, Origin]:
+    from ...bridge.properties.attached_groups import ensure_groups
+
+    ensure_groups()  # else armatures and actions have no place for what is noted with them
     if clip.path.suffix.lower() == SCENE:
         return _open(clip.path, clip.armature)
     import bpy
@@ -158,9 +159,7 @@ def _open(path: Path, wanted: str | None) -> tuple[bpy.types.Object, Origin]:
     import bpy
 
     from ...bridge.accessors import current_action, current_scene, present
-    from ...bridge.properties.attached_groups import ensure_groups
 
-    ensure_groups()  # else it is not known which action is the recording
     try:
         with quiet():
             bpy.ops.wm.open_mainfile(filepath=str(path), load_ui=False)

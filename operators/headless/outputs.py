@@ -236,12 +236,10 @@ class Outputs:
         from ...bridge.armature.write import side_by_side, write_action
         from ...bridge.files.reproportioned import build_reproportioned, in_new_axes
         from ...bridge.loops.write_loop import Loop, write_loop
-        from ...bridge.properties.attached_groups import ensure_groups
         from ...bridge.properties.of_actions.known_contacts import keep_contacts
         from ...bridge.takes.take_time import TakeTime
         from ...bridge.takes.write_result import write_result
 
-        ensure_groups()  # contacts are kept with an action
         recorded = present(current_action(self.clip.armature))
         armature, track = self.clip.armature, self.result.track
         schedule = self.result.schedule
