@@ -3,20 +3,85 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import dataclass
 from typing import Any
 from zlib import crc32
 
 import bpy
 
-_LAST = ("met", "status")  # others, when they are set, forget these
+OUTCOMES = ("met", "status")  # of a solve; other values, when they are set, forget these
+_UNSET = object()  # what nobody has set
+
+HeldSettings = dict[str, Any]
+"""What a group stores, apart from it, by name: of a group within it the same, of rows a list of
+these, of a data-block a `_Pointer`, and values."""
+
+
+@dataclass(frozen=True)
+class _Pointer:
+    """To a data-block, by its number in this session, for an undo puts another in its place; 0 for
+    none."""
+
+    uid: int
+
+    @property
+    def target(self) -> bpy.types.ID | None:
+        """None, too, where it is gone."""
+        kinds = (bpy.data.objects, bpy.data.actions, bpy.data.collections, bpy.data.texts)
+        every = (each for kind in kinds for each in kind) if self.uid else ()
+        return next((each for each in every if each.session_uid == self.uid), None)
 
 
 def copy_settings(
     source: bpy.types.PropertyGroup, target: bpy.types.PropertyGroup, skip: Collection[str] = ()
 ) -> None:
-    """Make everything stored in a group that of another of its class. skip: names left alone."""
-    for name in sorted(_names(source, skip), key=lambda name: name in _LAST):
-        _copy(source, target, source.bl_rna.properties[name])
+    """Make everything stored in a group that of another of its class. skip: names left alone, of
+    rows too."""
+    put_settings(held_settings(source, skip), target)
+
+
+def held_settings(group: Any, skip: Collection[str] = ()) -> HeldSettings:
+    """Everything that is stored in a group, to be put into one later. skip: names left out, of rows
+    too."""
+    held: HeldSettings = {}
+    for name in sorted(_names(group, skip), key=lambda name: name in OUTCOMES):
+        what, value = group.bl_rna.properties[name], getattr(group, name)
+        if what.type == "COLLECTION":
+            held[name] = [held_settings(row, skip) for row in value]
+        elif _is_group(group, what):
+            held[name] = held_settings(value, skip)
+        elif what.type == "POINTER":
+            held[name] = _Pointer(value.session_uid if value is not None else 0)
+        elif not group.is_property_set(name):
+            held[name] = _UNSET
+        else:
+            held[name] = _plain(group, name)
+    return held
+
+
+def put_settings(held: HeldSettings, target: Any) -> None:
+    """Make what was held that of a group of its class. What is not another value is not set, so
+    that no outcome is forgotten for it."""
+    for name, value in held.items():
+        if isinstance(value, list):
+            for row, kept in zip(resized(getattr(target, name), len(value)), value, strict=True):
+                put_settings(kept, row)
+        elif isinstance(value, dict):
+            put_settings(value, getattr(target, name))
+        elif isinstance(value, _Pointer):
+            if getattr(target, name) != value.target:
+                setattr(target, name, value.target)
+        elif value is _UNSET:
+            target.property_unset(name)
+        elif not (target.is_property_set(name) and _plain(target, name) == value):
+            setattr(target, name, value)
+
+
+def _plain(group: Any, name: str) -> object:
+    """A stored value; of a vector the tuple."""
+    value = getattr(group, name)
+    many = getattr(group.bl_rna.properties[name], "is_array", False)
+    return tuple(value) if many else value
 
 
 def settings_digest(group: bpy.types.PropertyGroup, skip: Collection[str] = ()) -> str:
@@ -40,24 +105,6 @@ def settings_targets(
         elif what.type == "POINTER" and not isinstance(value, bpy.types.Text | None):
             found.append(value)
     return found
-
-
-def _copy(source: Any, target: Any, what: bpy.types.Property) -> None:
-    name = what.identifier
-    if what.type == "COLLECTION":
-        rows, copies = getattr(source, name), getattr(target, name)
-        while len(copies) < len(rows):
-            copies.add()
-        for index in reversed(range(len(rows), len(copies))):
-            copies.remove(index)  # an override keeps those of the linked file
-        for row, copied in zip(rows, copies, strict=False):
-            copy_settings(row, copied)
-    elif _is_group(source, what):
-        copy_settings(getattr(source, name), getattr(target, name))
-    elif source.is_property_set(name):
-        setattr(target, name, getattr(source, name))
-    elif target.is_property_set(name):
-        target.property_unset(name)
 
 
 def _is_group(owner: Any, what: bpy.types.Property) -> bool:
@@ -88,8 +135,7 @@ def _stored(group: Any, skip: Collection[str]) -> list[tuple[str, object]]:
         elif what.type == "POINTER":
             found.append((name, value is not None))  # whatever the artist calls it
         elif group.is_property_set(name):
-            many = getattr(what, "is_array", False)
-            value = tuple(getattr(group, name)) if many else getattr(group, name)
+            many, value = getattr(what, "is_array", False), _plain(group, name)
             if value != (tuple(what.default_array) if many else what.default):
                 found.append((name, value))  # else it is as if nobody had touched it
     return found

@@ -29,7 +29,15 @@ from ..properties.settings import (
 )
 from ..properties.stances import move_empties
 from ..rows.choices import Span
-from ..rows.copying import copy_settings, settings_digest, settings_targets
+from ..rows.copying import (
+    OUTCOMES,
+    HeldSettings,
+    copy_settings,
+    held_settings,
+    put_settings,
+    settings_digest,
+    settings_targets,
+)
 from .difference import bake_combined, difference_shown
 from .span import ResultSpan
 
@@ -57,6 +65,21 @@ class ListedTake:
     shown: bool
     stale: str
     polished: bool
+
+
+@dataclass(frozen=True)
+class AskedSettings:
+    """Settings as they were when a result was asked for, after which the artist may go on changing
+    them. key: their digest."""
+
+    held: HeldSettings
+    key: str
+
+    @staticmethod
+    def of(settings: HangtimeSettings) -> AskedSettings:
+        """Of what the settings are now, without what solves told of them."""
+        held = held_settings(settings, (*_NOT_KEPT, *OUTCOMES))
+        return AskedSettings(held, settings_digest(settings, _NOT_ASKED))
 
 
 def root_of(action: bpy.types.Action) -> bpy.types.Action:
@@ -208,15 +231,24 @@ def start_from_recording(armature: bpy.types.Object) -> None:
 
 
 def note_made(
-    armature: bpy.types.Object, action: bpy.types.Action, span: ResultSpan | None, later: int
+    armature: bpy.types.Object,
+    action: bpy.types.Action,
+    span: ResultSpan | None,
+    later: int,
+    asked: AskedSettings | None = None,
 ) -> None:
-    """Keep with a new result its edit, and what it and its take are now."""
+    """Keep with a new result its edit, and what it and its take are now.
+
+    asked: what it was made with; None for the settings as they are.
+    """
     made, source = action_settings(action), source_of(action)
     assert source is not None
+    asked = asked or AskedSettings.of(settings_of(armature))
     copy_settings(settings_of(armature), made.edit, _NOT_KEPT)
-    made.asked_key = settings_digest(settings_of(armature), _NOT_ASKED)
+    put_settings(asked.held, made.edit)
+    made.asked_key = asked.key
     made.asked_targets.clear()
-    for target in settings_targets(settings_of(armature), _NOT_ASKED):
+    for target in settings_targets(made.edit, _NOT_ASKED):
         made.asked_targets.add().target = target
     made.take_key, made.own_key = take_digest(armature, source), _digest(action)
     made.stale, made.polished, made.holds_polish = "", False, False

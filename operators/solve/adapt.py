@@ -36,6 +36,7 @@ from ...bridge.repairs.stored import undoubted
 from ...bridge.rows.aimed_requests import apart_from_aimed, require_unaimed
 from ...bridge.rows.choices import LoopRoot, WrittenAs
 from ...bridge.takes.options import loop_options, result_options
+from ...bridge.takes.takes import AskedSettings
 from ...bridge.takes.write_result import (
     require_slot,
 )
@@ -122,9 +123,10 @@ class Adapting(TaskOperator):
         return (yield from write_answer(asked, answer))
 
     def _asked(self, context: bpy.types.Context) -> Incremental[Asked]:
+        armature = required_armature(context)  # another may be chosen by the time it is read
         asked = yield from ask_for(context)
         session().advance(SolveState.SOLVING)
-        settings, requests = settings_of(required_armature(context)), asked.problem.requests
+        settings, requests = settings_of(armature), asked.problem.requests
         requests = replace(requests, solution=self.solution(settings, requests.solution))
         requests = apart_from_aimed(requests, asked.aimed, asked.recording.bones)
         first, last = wanted_range(settings)
@@ -197,14 +199,14 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     settings = settings_of(armature)
     recording = yield from read_wanted(armature)
     _require_analysed(armature, recording)
-    options = result_options(settings)
     _require_loopable(armature)
     aimed = yield from require_writable(armature, recording, span_of(settings, recording))
     scene = yield from read_surfaces(armature, recording.frames)
     skin = (yield from read_bound(armature, recording.frames)).skin
     problem = problem_of(settings, recording, scene.objects, skin=skin)
     require_unaimed(problem.requests, aimed, recording.bones)
-    apart = loop_options(settings) is not None or problem.requests.body.limbs
+    options, looped = result_options(settings), loop_options(settings)
+    apart = looped is not None or problem.requests.body.limbs
     if not apart:  # those are actions of their own
         if not problem.pins_alone:  # of these it is known where the range that is solved ends
             require_return_after(options, span_of(settings, recording)[1])
@@ -213,7 +215,18 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
         require_return_within(options, end)
         if options.written_as is WrittenAs.SLOT:
             require_slot(armature)
-    return Asked(armature.name, armature.session_uid, recording, problem, scene, aimed)
+    return Asked(
+        armature.name,
+        armature.session_uid,
+        recording,
+        problem,
+        AskedSettings.of(settings),
+        options,
+        key_options(settings),
+        looped,
+        scene,
+        aimed,
+    )
 
 
 def followed_problem(settings: HangtimeSettings, asked: Asked, held: str) -> MotionProblem:

@@ -51,15 +51,15 @@ def write_keys(
     performer: bpy.types.Object,
     action: bpy.types.Action,
     answer: Adapted,
+    options: KeyOptions,
     rig: ControlRig | None = None,
 ) -> Incremental[None]:
     """Give an action that a performer shows the keys that are asked for, and tell what they leave.
 
-    armature: whose settings count. rig: the controls that pose the performer, if such do. The
+    armature: who has the recording. rig: the controls that pose the performer, if such do. The
     action has a key on every frame before, and stays so where the artist cancels.
     """
     settings = settings_of(armature)
-    options = key_options(settings)
     if options.on is KeyChoice.EVERY_FRAME:
         return
     track, rate = answer.track, answer.report.recording.frames_per_second

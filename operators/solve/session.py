@@ -7,7 +7,11 @@ from typing import Protocol
 import bpy
 from bpy.app.handlers import persistent
 
+from ...bridge.recipe.keys import KeyOptions
+from ...bridge.recipe.loop import LoopOptions
+from ...bridge.recipe.result import ResultOptions
 from ...bridge.scene.read import SceneReading
+from ...bridge.takes.takes import AskedSettings
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
 from ...solver.data.scene import SupportBox
@@ -19,12 +23,20 @@ from .solving import SolveState, Solving
 @dataclass(frozen=True)
 class Asked:
     """A request: of which armature (its name then, and its number in this session), what its
-    recording and the scene's surfaces were, what was asked, and which bones stay aimed."""
+    recording and the scene's surfaces were, what was asked, and which bones stay aimed.
+
+    settings: those that ask for it, as the artist may change them before it is solved. result,
+    keys, loop: what they say of these, for the same reason.
+    """
 
     armature: str
     uid: int
     recording: Recording
     problem: MotionProblem
+    settings: AskedSettings
+    result: ResultOptions = field(default_factory=ResultOptions)
+    keys: KeyOptions = field(default_factory=KeyOptions)
+    loop: LoopOptions | None = None
     scene: SceneReading = field(default_factory=SceneReading)
     aimed: tuple[str, ...] = ()
 

@@ -29,11 +29,10 @@ from ...bridge.properties.of_actions.known_contacts import SolvedContacts, keep_
 from ...bridge.properties.of_actions.shown_overlaps import store_overlaps
 from ...bridge.properties.of_actions.shown_times import store_times
 from ...bridge.properties.settings import action_settings, settings_of
-from ...bridge.recipe.result import ResultOptions, require_return_after
+from ...bridge.recipe.result import require_return_after
 from ...bridge.rows.choices import After, ContactMarkers, WrittenAs
 from ...bridge.rows.phases import roles
 from ...bridge.scene.played_end import play_longer
-from ...bridge.takes.options import loop_options, result_options
 from ...bridge.takes.plan import AdaptedMotion
 from ...bridge.takes.span import ResultSpan
 from ...bridge.takes.take_time import TakeTime
@@ -52,7 +51,7 @@ from ...bridge.takes.write_result import (
 from ...solver.body.character import build_character
 from ...solver.body.proportions import changed_recording
 from ...solver.data.faults import ChangedMeanwhile, Fault, RateChanged
-from ...solver.data.recording import PoseTrack, Recording, same_motion
+from ...solver.data.recording import PoseTrack, same_motion
 from ...solver.data.solver_options import Method
 from ...solver.worker.protocol import Adapted
 from ..words.headline import blend_lines, missed_line, slide_lines
@@ -102,9 +101,8 @@ def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
     armature = yield from _unchanged(asked)
     stale = yield from stale_surfaces(asked, armature)
     session().advance(SolveState.WRITING)
-    limbs = asked.problem.requests.body.limbs
-    if limbs:
-        done = yield from _write_other(changed_recording(asked.window, limbs), answer, armature)
+    if asked.problem.requests.body.limbs:
+        done = yield from _write_other(asked, answer, armature)
     else:
         written = replace(answer, track=without(answer.track, asked.aimed))
         done = yield from _write_own(asked, written, armature)
@@ -122,7 +120,7 @@ def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
 def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Incremental[str]:
     """The answer as a new action of the armature. Raises ReturnTooEarly."""
     stood = armature.matrix_world.copy()
-    looped, options = loop_options(settings_of(armature)), result_options(settings_of(armature))
+    looped, options = asked.loop, asked.result
     if looped is not None:
         loop = Loop.of(armature, answer.track, looped.root)
         action, made = yield from write_loop_incrementally(armature, loop)
@@ -132,7 +130,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
             complete(_tell_missed(armature, armature, action, answer))
         mark_contacts(armature, action, answer, options)
         keep_contacts(action, _solved_contacts(asked, answer))
-        note_made(armature, action, None, 0)
+        note_made(armature, action, None, 0, asked.settings)
         return f"Wrote the loop {action.name}"
     require_return_after(options, answer.report.times.recorded_frame[-1])
     renewal = Renewal.of(armature)
@@ -156,7 +154,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     time = written.time if written is not None else TakeTime.of(times, 1.0)
     span = written.span if written is not None else None
     keep_contacts(action, _solved_contacts(asked, answer), asked.recording.known, time.later)
-    finishing = _finish(armature, action, answer, options, renewal, span, time)
+    finishing = _finish(armature, action, asked, answer, renewal, span, time)
     try:
         yield from _tell_missed(armature, armature, action, answer)
         rate = answer.report.recording.frames_per_second
@@ -164,7 +162,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         moved = yield from renewal.put_on(action, bones, along, time, answer.schedule, rate)
         _tell_polish(armature, action, renewal, moved)
         rig = written.rig if written is not None else None
-        yield from write_keys(armature, armature, action, answer, rig)
+        yield from write_keys(armature, armature, action, answer, asked.keys, rig)
         _tell_unmet(armature, action, answer.track)
         for _ in finishing:  # not "yield from", which would close it with what it is part of
             yield None
@@ -176,13 +174,14 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
 def _finish(
     armature: bpy.types.Object,
     action: bpy.types.Action,
+    asked: Asked,
     answer: Adapted,
-    options: ResultOptions,
     renewal: Renewal,
     span: ResultSpan | None,
     time: TakeTime,
 ) -> Incremental[None]:
     """What makes written keys a result: its contacts, its form, and what it was made of."""
+    options = asked.result
     mark_contacts(armature, action, answer, options)
     yield None
     match options.written_as:
@@ -191,7 +190,7 @@ def _finish(
         case WrittenAs.SLOT:
             lay_in_slot(armature, present(source_of(action)), action)
     yield None
-    note_made(armature, action, span, time.later)
+    note_made(armature, action, span, time.later, asked.settings)
     yield None
     frames = answer.report.times.recorded_frame
     renewal.note(action, time, (frames[0], frames[-1]))
@@ -265,10 +264,9 @@ def _warn(
     made.warning = "\n".join([line for line in (made.warning, *warned) if line])
 
 
-def _write_other(
-    recording: Recording, answer: Adapted, armature: bpy.types.Object
-) -> Incremental[str]:
+def _write_other(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Incremental[str]:
     """The answer on an armature of its own, for the artist's keeps its proportions."""
+    recording = changed_recording(asked.window, asked.problem.requests.body.limbs)
     other, track, turns = build_reproportioned(recording, answer.track)
     other.name = f"{armature.name} changed"
     source = present(recorded_action(armature))
@@ -276,12 +274,12 @@ def _write_other(
     derive(action, source, armature)
     settings_of(armature).adapted = action
     keep(action, answer.traces, armature.matrix_world)
-    options = result_options(settings_of(armature))
+    options = asked.result
     left_out = [] if options.after is After.CUT else [ALONE.format(other.name)]
     _note(armature, other, action, answer, left_out)
     turned = replace(answer, schedule=in_new_axes(answer.schedule, turns))
     yield from _tell_missed(armature, other, action, turned)
-    yield from write_keys(armature, other, action, answer)
+    yield from write_keys(armature, other, action, answer, asked.keys)
     mark_contacts(other, action, answer, options)
     return f"Made the armature {other.name}, which performs the adapted motion"
 

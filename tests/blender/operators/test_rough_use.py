@@ -14,6 +14,7 @@ from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.bridge.files.import_clip import import_clip
 from hangtime.bridge.polish.samples import written_of
+from hangtime.bridge.takes.takes import EDIT_CHANGED, AskedSettings, look_again
 from hangtime.bridge.worker_client import shared
 from hangtime.operators.solve import write_answer as write_answer_module
 from hangtime.operators.solve.adapt import ask_for
@@ -26,7 +27,6 @@ from hangtime.operators.solve.task import Task, TaskOperator
 from hangtime.operators.solve.write_answer import write_answer
 from hangtime.solver.data.faults import ChangedMeanwhile, NoArmature, RateChanged
 from hangtime.solver.data.problem import MotionProblem
-from hangtime.solver.data.recording import digest
 from hangtime.solver.worker.protocol import RequestKind
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.helpers.clips import mocap_path
@@ -91,7 +91,8 @@ def test_a_change_meanwhile_is_said_to_have_cost_the_result(
 ) -> None:
     """Also where what is there now cannot be read at all."""
     recording = read_recorded(run, 1.0, 20.0)
-    asked = Asked(run.name, digest(recording), recording, MotionProblem())
+    settings = AskedSettings.of(run.hangtime)
+    asked = Asked(run.name, run.session_uid, recording, MotionProblem(), settings)
     if change == "no keys":
         run.animation_data.action = bpy.data.actions.new("Other")
     elif change == "uneven scale":
@@ -177,3 +178,27 @@ def test_a_result_that_is_cancelled_while_it_is_finished_is_whole(
     result = analysed.hangtime.adapted
     assert result.hangtime.own_key
     assert written_of(result) is not None
+
+
+def test_settings_changed_during_a_solve_are_kept_and_the_result_is_told_as_of_those_before(
+    analysed: bpy.types.Object,
+) -> None:
+    settings = analysed.hangtime
+    asked = complete(ask_for(bpy.context))
+    job = shared().ask(RequestKind.ADAPT, asked.recording, asked.problem)
+    before = settings.mass
+    settings.mass, settings.result.written_as, settings.loop.use = 90.0, "STRIP", True
+    job.wait()
+    session().solving = replace(Solving(), state=SolveState.SOLVING)
+    try:
+        complete(write_answer(asked, job.answer))
+    finally:
+        session().solving = None
+    result = settings.adapted
+    assert result == analysed.animation_data.action
+    assert (result.hangtime.edit.mass, settings.mass) == (before, 90.0)
+    assert look_again(analysed)
+    assert result.hangtime.stale == EDIT_CHANGED
+    settings.mass, settings.result.written_as, settings.loop.use = before, "ACTION", False
+    assert look_again(analysed)
+    assert not result.hangtime.stale

@@ -15,6 +15,7 @@ from hangtime.bridge.armature.traces_store import kept
 from hangtime.bridge.constraints.motion_problem import analysis_key, problem_of
 from hangtime.bridge.constraints.surface_status import write_surface_status
 from hangtime.bridge.repairs.placed_armature import repair
+from hangtime.bridge.takes.takes import AskedSettings
 from hangtime.operators.drag.drag_state import Landing
 from hangtime.operators.drag.rays import Ray
 from hangtime.operators.drag.snapping import Snapping
@@ -203,7 +204,8 @@ def asked(rig: bpy.types.Object) -> Asked:
     """As after the worker was asked, a crate beside the rig."""
     add_row(rig, make_box("Crate"))
     recording = read_recorded(rig, FIRST, LAST)
-    return Asked(rig.name, rig.session_uid, recording, MotionProblem(), read(rig, recording.frames))
+    settings, scene = AskedSettings.of(rig.hangtime), read(rig, recording.frames)
+    return Asked(rig.name, rig.session_uid, recording, MotionProblem(), settings, scene=scene)
 
 
 def test_the_surfaces_are_part_of_the_problem(rig: bpy.types.Object) -> None:
