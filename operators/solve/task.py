@@ -1,6 +1,7 @@
 """Cooperative multitasking of long operators: parts and a worker, so that Blender never freezes."""
 
 from collections.abc import Generator
+from contextlib import AbstractContextManager, nullcontext
 from time import perf_counter
 from typing import TypeVar
 
@@ -41,6 +42,35 @@ def answered(job: PendingRequest, kind: type[A]) -> Generator[PendingRequest, No
     return job.answer
 
 
+def kept_in_scene(context: bpy.types.Context, task: Task) -> Task:
+    """The same work in the context's scene and view layer, also while another scene is shown.
+
+    Raises ReferenceError where the scene is gone.
+    """
+    scene, layer = present(context.scene).session_uid, present(context.view_layer).name
+    try:
+        while True:
+            with _in_scene(scene, layer):
+                try:
+                    job = next(task)
+                except StopIteration as end:
+                    return str(end.value)
+            yield job
+    finally:
+        there = any(each.session_uid == scene for each in bpy.data.scenes)
+        with _in_scene(scene, layer) if there else nullcontext():
+            task.close()
+
+
+def _in_scene(uid: int, layer: str) -> AbstractContextManager[object]:
+    """Context of a scene (its number in this session) and its layer of that name, or its first."""
+    scene = next((each for each in bpy.data.scenes if each.session_uid == uid), None)
+    if scene is None:
+        raise ReferenceError
+    layers = scene.view_layers
+    return bpy.context.temp_override(scene=scene, view_layer=layers.get(layer) or layers[0])
+
+
 class TaskOperator(ReadyOperator, FaultyOperator):
     """Mixin: `task` does the work; waits for it in scripts, looks now and then in the interface."""
 
@@ -50,7 +80,7 @@ class TaskOperator(ReadyOperator, FaultyOperator):
 
     def run(self, context: bpy.types.Context) -> OperatorResult:
         solving = session().solving = self._begun()
-        task = self.task(context)
+        task = kept_in_scene(context, self.task(context))
         finished = False
         try:
             with at_once():
@@ -79,7 +109,7 @@ class TaskOperator(ReadyOperator, FaultyOperator):
         session().failure = None
         armature = chosen_armature(context)
         self._uid = armature.session_uid if armature is not None else 0
-        self._task = self.task(context)
+        self._task = kept_in_scene(context, self.task(context))
         manager = present(context.window_manager)
         self._timer = manager.event_timer_add(LOOK_EVERY, window=context.window)
         self._workspace = present(context.workspace)
