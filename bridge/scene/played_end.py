@@ -14,20 +14,29 @@ def play_longer(
     scene: bpy.types.Scene, armature: bpy.types.Object, result: bpy.types.Action
 ) -> None:
     """Where a scene plays to its end what an armature's result was made from, it plays the result
-    to its own."""
+    to its own; and with it the armature's other scenes that have ended where it did."""
     kept, (before, last) = scene_settings(scene), _ends(armature, result)
+    alike = [each for each in armature.users_scene if each.frame_end == scene.frame_end]
     if scene.frame_end != kept.lengthened_to:  # the artist's own, from which all counts anew
         kept.own_end = kept.lengthened_to = scene.frame_end
         for _, earlier in _results(scene):
             action_settings(earlier).lengthens = False
     action_settings(result).lengthens = floor(before) <= scene.frame_end
     play_to_end(scene, before, last)
-    kept.lengthened_to = scene.frame_end
+    for each in {scene, *alike}:
+        its, each.frame_end = scene_settings(each), scene.frame_end
+        its.own_end, its.lengthened_to = kept.own_end, scene.frame_end
 
 
-def play_what_is_left(scene: bpy.types.Scene) -> None:
-    """After a result has gone: the scene ends as if only those that are left had been made since
-    the artist set its end, of any armature; but it stays where the artist has changed it since."""
+def play_what_is_left(armature: bpy.types.Object) -> None:
+    """After a result has gone: the armature's scenes end as if only those that are left had been
+    made since the artist set their ends, of any armature; but they stay where the artist has
+    changed them since."""
+    for scene in armature.users_scene:
+        _play_what_is_left(scene)
+
+
+def _play_what_is_left(scene: bpy.types.Scene) -> None:
     kept = scene_settings(scene)
     if scene.frame_end != kept.lengthened_to:
         return

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...bridge.accessors import current_action, current_scene, present, source_of
+from ...bridge.accessors import current_action, present, source_of
 from ...bridge.action_slots import lost_slot
 from ...bridge.armature.actions import recorded_action, show
 from ...bridge.armature.played import why_no_action
@@ -231,7 +231,7 @@ class DiscardOperator(_OfSettledResult, bpy.types.Operator):
             remove_strips(each, result)
         remove_slot(result)
         bpy.data.actions.remove(result)
-        play_what_is_left(current_scene())
+        play_what_is_left(armature)
         if recorded is not None and not results_from(recorded):
             unguard(recorded)
         settings.adapted = None  # the edit at work is no other result's

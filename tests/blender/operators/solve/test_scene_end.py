@@ -44,7 +44,7 @@ def make(name: str, last: int) -> None:
 
 def discard(name: str, last: int) -> None:
     bpy.data.actions.remove(bpy.data.actions[f"{name} {last}"])
-    play_what_is_left(bpy.context.scene)
+    play_what_is_left(bpy.data.objects[name])
 
 
 def same(_path: Path) -> None:
@@ -117,3 +117,18 @@ def test_a_result_of_what_the_scene_did_not_play_to_its_end_never_lengthens_it()
     assert bpy.context.scene.frame_end == 60
     discard("A", 60)
     assert bpy.context.scene.frame_end == END
+
+
+@pytest.mark.usefixtures("_figures")
+def test_scenes_that_share_a_character_and_end_alike_go_along() -> None:
+    bpy.ops.scene.new(type="LINK_COPY")
+    alike = bpy.context.scene
+    bpy.ops.scene.new(type="LINK_COPY")
+    other = bpy.context.scene
+    other.frame_end = 40
+    bpy.ops.scene.new(type="LINK_COPY")
+    bpy.context.scene.frame_end = END
+    make("A", 60)
+    assert [each.frame_end for each in (bpy.context.scene, alike, other)] == [60, 60, 40]
+    discard("A", 60)
+    assert [each.frame_end for each in (bpy.context.scene, alike, other)] == [END, END, 40]
