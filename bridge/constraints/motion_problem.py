@@ -45,7 +45,9 @@ from .bone_mapping import chosen_parts
 from .requests import joined, requests_of
 
 _METRES_PER_MM = 1e-3
-SAME_RATE = 1e-6  # relative; what a scene stores is float32
+# Relative. Clips round their frame time, and .00833 s is 4e-4 from .0083333 s; at this much a fall of
+# 1 m is 1 mm off. NTSC's rates are 1e-3 from whole ones, and are meant.
+SAME_RATE = 5e-4
 
 _Span = tuple[float, float]
 
@@ -72,11 +74,14 @@ def analysis_key(
     grid: float = POSE_TOLERANCE,
     *,
     named: bool = False,
+    timed: bool = False,
 ) -> str:
     """What an analysis is of: the recording, the range where there are frames beyond it, and
     whether it is a loop's, and its repairs. grid: of its poses; to their last bit they would be
-    others on another computer. named: whether its action's name is part of it. Raises BadRecipe."""
+    others on another computer. named, timed: whether its action's name and its times are part of
+    it; the rate is kept beside it. Raises BadRecipe."""
     told = recording if named else replace(recording, name="")
+    told = told if timed else replace(told, times=told.frames - told.frames[0])
     span, key = span_of(settings, recording), digest(told, grid)
     whole = span == (recording.frames[0], recording.frames[-1])
     key = key if whole else f"{key} {span[0]:g} {span[1]:g}"
@@ -86,9 +91,11 @@ def analysis_key(
 
 def analysis_is_of(settings: HangtimeSettings, recording: Recording) -> bool:
     """Whether this is what was analysed, whatever its action is called now. Earlier versions kept
-    the key with its name, the first ones of every bit."""
+    the key with its times, before that with its name, too, the first ones of every bit."""
+    if settings.analysed == analysis_key(settings, recording) and rates_since(settings) is None:
+        return True
     return any(
-        settings.analysed == analysis_key(settings, recording, grid, named=named)
+        settings.analysed == analysis_key(settings, recording, grid, named=named, timed=True)
         for grid, named in ((POSE_TOLERANCE, False), (POSE_TOLERANCE, True), (0.0, True))
     )
 

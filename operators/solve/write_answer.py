@@ -319,6 +319,6 @@ def _unchanged(asked: Asked) -> Incremental[bpy.types.Object]:
             now = yield from read_recorded_incrementally(armature, frames[0], frames[-1])
         except Fault as fault:  # another action, a scale: whatever it is, it is new
             raise ChangedMeanwhile(asked.armature, while_solving=True) from fault
-        if same_motion(now, asked.recording):
+        if same_motion(replace(now, times=asked.recording.times), asked.recording):
             return armature
     raise ChangedMeanwhile(asked.armature, while_solving=True)

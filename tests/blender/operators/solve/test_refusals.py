@@ -317,7 +317,7 @@ def test_a_file_that_another_processor_analysed_needs_no_analysis(
     assert analysis_is_of(settings, replace(read, heads=read.heads * (1.0 + bits)))
     assert not analysis_is_of(settings, replace(read, heads=read.heads + 1e-3))
     for grid in (POSE_TOLERANCE, 0.0):  # as earlier versions kept it
-        settings.analysed = analysis_key(settings, read, grid, named=True)
+        settings.analysed = analysis_key(settings, read, grid, named=True, timed=True)
         assert analysis_is_of(settings, read)
 
 
@@ -337,6 +337,18 @@ def test_a_frame_rate_that_changed_is_named(analysed: bpy.types.Object) -> None:
         RuntimeError, match=r"its keys, repairs, .* or the scene's frame rate or unit scale changed"
     ):
         bpy.ops.hangtime.fit()
+
+
+def test_a_frame_time_with_fewer_digits_is_the_same_frame_rate(analysed: bpy.types.Object) -> None:
+    """As importing another clip of the same capture sets it."""
+    render, settings = bpy.context.scene.render, analysed.hangtime
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    recording = complete(read_wanted(analysed))
+    for rate, same in ((1.0 / 0.008333, True), (1.0 / 0.00833, True), (120.0 / 1.001, False)):
+        render.fps, render.fps_base = 120, 120.0 / rate
+        assert analysis_is_of(settings, complete(read_wanted(analysed))) == same
+    render.fps_base = 1.0
+    assert analysis_is_of(settings, recording)
 
 
 def test_a_frame_rate_that_no_one_kept_may_be_what_changed(analysed: bpy.types.Object) -> None:
