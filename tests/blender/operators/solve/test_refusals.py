@@ -332,10 +332,13 @@ def test_a_frame_rate_that_changed_is_named(analysed: bpy.types.Object) -> None:
     render.fps, render.fps_base = before
     assert bpy.ops.hangtime.fit() == {"FINISHED"}
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    told = r"its place, keys, repairs, .* or the scene's frame rate or unit scale changed"
+    analysed.location.x += 1.0
+    with pytest.raises(RuntimeError, match=told):
+        bpy.ops.hangtime.fit()
+    analysed.location.x -= 1.0
     curves_of(analysed)[0].keyframe_points[150].co[1] += 0.1
-    with pytest.raises(
-        RuntimeError, match=r"its keys, repairs, .* or the scene's frame rate or unit scale changed"
-    ):
+    with pytest.raises(RuntimeError, match=told):
         bpy.ops.hangtime.fit()
 
 
