@@ -45,8 +45,8 @@ from .bone_mapping import chosen_parts
 from .requests import joined, requests_of
 
 _METRES_PER_MM = 1e-3
-# Relative. Clips round their frame time: .00833 s is 4e-4 from .0083333 s. At this much a fall of 1 m
-# is 1 mm off. NTSC's rates are 1e-3 from whole ones, and are meant.
+# Relative. Clips round their frame time: .00833 s is 4e-4 from .0083333 s. At this much a fall of
+# 1 m is 1 mm off. NTSC's rates are 1e-3 from whole ones, and are meant.
 SAME_RATE = 5e-4
 
 _Span = tuple[float, float]
