@@ -11,7 +11,7 @@ from contextlib import contextmanager
 import bpy
 import numpy as np
 
-from ..accessors import BESIDE, IN_STRIP, SHOWS, current_action, shown_by, take_strips
+from ..accessors import BESIDE, IN_STRIP, SHOWS, current_action, present, shown_by, take_strips
 from ..action_slots import all_curves, span_of
 from ..unkeyed import put_back
 from . import fcurves
@@ -31,33 +31,45 @@ def lay_strips(
     slot: str | None,
     difference: bpy.types.Action | None = None,
 ) -> None:
-    """Put a result into a strip above the take's, which is laid below where it is not yet.
+    """Put a result into a strip above the take's, which is laid below where it is not yet; strips
+    of the artist's above the take's stay above, and so act on the result.
 
     No action is assigned any more; the result is what is shown. slot: identifier of the slot that
     all have for `owner`. difference: what combined with the take is the result; without it the
     result's strip replaces the take's.
     """
-    data = owner.animation_data_create()
-    extrapolation = data.action_extrapolation
+    extrapolation = owner.animation_data_create().action_extrapolation
     fcurves.assign(owner, None)
     if not strips_of(owner, take):
-        _lay(data, take, slot).extrapolation = extrapolation
+        _lay(owner, take, slot).extrapolation = extrapolation
     if difference is None:
-        _lay(data, result, slot)
+        _lay(owner, result, slot)
     else:
         difference[SHOWS], difference[BESIDE] = result, take
-        _lay(data, difference, slot).blend_type = "COMBINE"
+        _lay(owner, difference, slot).blend_type = "COMBINE"
     show_strip(owner, result)
 
 
-def _lay(
-    data: bpy.types.AnimData, action: bpy.types.Action, slot: str | None
-) -> bpy.types.NlaStrip:
-    """A new strip above all others, which shows each frame of an action at that frame."""
+def layers_above(owner: bpy.types.Object, take: bpy.types.Action) -> list[str]:
+    """Names of the artist's strips above the one that plays a take that add to it when they are
+    seen; none where no strip plays it."""
+    tracks, playing = [track for track, _ in take_strips(owner)], strips_of(owner, take)
+    if not playing:
+        return []
+    every = list(present(owner.animation_data).nla_tracks)
+    above = every[every.index(playing[0][0]) + 1 :]
+    strips = (strip for track in above if track not in tracks for strip in track.strips)
+    return [strip.name for strip in strips if strip.blend_type != "REPLACE"]
+
+
+def _lay(owner: bpy.types.Object, action: bpy.types.Action, slot: str | None) -> bpy.types.NlaStrip:
+    """A new strip above the others that Hangtime made, or above all where it made none, which shows
+    each frame of an action at that frame."""
+    tracks, below = owner.animation_data_create().nla_tracks, take_strips(owner)
     action[IN_STRIP] = True
     first, last = _shown_span(action)
     start, end = float(np.floor(first)), float(np.ceil(last))
-    track = data.nla_tracks.new()
+    track = tracks.new(prev=below[-1][0] if below else None)
     track.name = action.name
     strip = track.strips.new(action.name, int(start), action)
     slots = list(getattr(action, "slots", ()))

@@ -10,6 +10,7 @@ from ...bridge.accessors import current_scene, present, source_of
 from ...bridge.armature.actions import read_recorded_incrementally, recorded_action
 from ...bridge.armature.incremental import Incremental, complete
 from ...bridge.armature.poses import frames_per_second
+from ...bridge.armature.strips import layers_above
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
 from ...bridge.constraints.motion_problem import SAME_RATE
@@ -89,6 +90,10 @@ MARKERS_LEFT_OUT = (
     "Contact markers are left out: an action's are those of all of its slots, the take's included; "
     "choose Timeline"
 )
+LAYERS_HIDDEN = (
+    "Strips above the take's ({}) do not add to this result, for an action goes before all strips; "
+    "choose NLA Strip, Replace or Combine, under Written As"
+)
 
 
 def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
@@ -125,7 +130,8 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         loop = Loop.of(armature, answer.track, looped.root)
         action, made = yield from write_loop_incrementally(armature, loop)
         keep(action, answer.traces, stood)
-        _note(armature, armature, action, answer, take_lines(made))
+        told = [*take_lines(made), *_layers_lines(armature, action)]
+        _note(armature, armature, action, answer, told)
         if loop.travels:
             complete(_tell_missed(armature, armature, action, answer))
         mark_contacts(armature, action, answer, options)
@@ -147,6 +153,8 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     told = take_lines(written, roles(settings_of(armature)))
     if options.written_as is WrittenAs.SLOT and options.markers is ContactMarkers.ACTION:
         told = [*told, MARKERS_LEFT_OUT]
+    if options.written_as in (WrittenAs.ACTION, WrittenAs.SLOT):
+        told = [*told, *_layers_lines(armature, action)]
     _note(armature, armature, action, answer, told)
     if written is not None:
         _warn(armature, action, [*blend_lines(written.blends), *slide_lines(written.slide)])
@@ -194,6 +202,12 @@ def _finish(
     yield None
     frames = answer.report.times.recorded_frame
     renewal.note(action, time, (frames[0], frames[-1]))
+
+
+def _layers_lines(armature: bpy.types.Object, action: bpy.types.Action) -> list[str]:
+    """Which of the artist's strips acted on what a result was made from, and do not on it."""
+    layers = layers_above(armature, present(source_of(action)))
+    return [LAYERS_HIDDEN.format(", ".join(layers))] if layers else []
 
 
 def _solved_contacts(asked: Asked, answer: Adapted) -> SolvedContacts:

@@ -15,6 +15,7 @@ from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.keys_digest import keys_digest
 from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.armature.read import read_recording
+from hangtime.bridge.armature.strips import layers_above
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.rows.choices import After, WrittenAs
 from hangtime.bridge.takes.plan import AdaptedMotion
@@ -108,6 +109,26 @@ def test_a_result_is_the_take_there_and_changed_only_in_its_frames(
     second = adapt(armature, 50.0, 60.0, written_as=written_as)  # from the take, as it is played
     np.testing.assert_allclose(sample(armature, frames).matrices, now.matrices, atol=2e-5)
     assert second != result
+
+
+@pytest.mark.parametrize("written_as", [WrittenAs.STRIP, WrittenAs.COMBINE])
+def test_what_an_artists_strip_adds_to_the_take_it_adds_to_the_result(
+    written_as: WrittenAs,
+) -> None:
+    armature, frames = played(), np.arange(50.0, 61.0)
+    take, tracks = current_action(armature), armature.animation_data.nla_tracks
+    layer = tracks.new()
+    nod = layer.strips.new("Nod", 30, take.copy())
+    nod.blend_type = "ADD"
+    layered = heights(armature, frames)
+    layer.mute = True
+    adds = layered - heights(armature, frames)
+    assert np.ptp(adds) > 0.0
+    adapt(armature, 50.0, 60.0, written_as=written_as)
+    assert layers_above(armature, take) == ["Nod"]
+    result = heights(armature, frames)
+    layer.mute = False
+    np.testing.assert_allclose(heights(armature, frames) - result, adds, atol=1e-5)
 
 
 def test_a_strip_that_plays_a_part_has_the_part_alone() -> None:
