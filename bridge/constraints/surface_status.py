@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from ...solver.data.reports.constraints import ConstraintReport
 from ...solver.data.reports.report import Report
@@ -16,23 +16,24 @@ KEPT_OUT = "Nothing new is in it"
 
 
 def write_surface_status(
-    settings: HangtimeSettings, report: Report, remarks: Mapping[str, str]
+    settings: HangtimeSettings,
+    report: Report,
+    remarks: Mapping[str, str],
+    stale: Collection[str] = (),
 ) -> None:
-    """Sets every row's `met` and `status`. remarks: what else there is to say, by object."""
+    """Sets every row's `met` and `status`. remarks: what else there is to say, by object. stale:
+    objects that are others by now, so that it is not known what is in them."""
     for row in settings.surfaces:
         names = {each.name_full for each in objects_of(row)}
-        said = [remark for name, remark in remarks.items() if name in names or name == row.called]
-        deepest = _deepest(report, names)
-        if not row.used:
-            row.met, row.status = Met.UNKNOWN.name, ""
-        elif deepest is not None:
-            row.met, row.status = Met.MISSED.name, _in_the_way(deepest)
-        elif said:
-            row.met, row.status = Met.UNKNOWN.name, said[0]
-        elif settings.keep_out:
-            row.met, row.status = Met.MET.name, KEPT_OUT
-        else:
-            row.met, row.status = Met.UNKNOWN.name, ""
+        called, deepest = {*names, row.called}, _deepest(report, names)
+        met, status = Met.UNKNOWN, ""
+        if deepest is not None:
+            met, status = Met.MISSED, _in_the_way(deepest)
+        elif settings.keep_out and called.isdisjoint(stale):
+            met, status = Met.MET, KEPT_OUT
+        said = [remark for name, remark in remarks.items() if name in called]
+        told = ". ".join([each for each in (status, *said[:1]) if each])
+        row.met, row.status = (met.name, told) if row.used else (Met.UNKNOWN.name, "")
         row.name = row.called
 
 

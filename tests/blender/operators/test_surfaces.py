@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,7 +14,7 @@ from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.traces_store import kept
 from hangtime.bridge.constraints.motion_problem import analysis_key, problem_of
-from hangtime.bridge.constraints.surface_status import write_surface_status
+from hangtime.bridge.constraints.surface_status import KEPT_OUT, write_surface_status
 from hangtime.bridge.repairs.placed_armature import repair
 from hangtime.bridge.takes.takes import AskedSettings
 from hangtime.operators.drag.drag_state import Landing
@@ -249,6 +250,21 @@ def test_a_row_says_what_stays_in_it(rig: bpy.types.Object, deep: bool) -> None:
         assert (row.met, row.status) == ("MET", "Nothing new is in it")
     row.role = "OBSTACLE"  # another question
     assert (row.met, row.status) == ("UNKNOWN", "")
+
+
+@pytest.mark.parametrize(
+    ("deep", "outcome"), [(True, "In the way: Left foot 12 mm at frame 12"), (False, KEPT_OUT)]
+)
+def test_a_row_says_what_stays_in_what_changes_its_shape(
+    rig: bpy.types.Object, asked: Asked, deep: bool, outcome: str
+) -> None:
+    overlap = ConstraintReport("Left foot in Crate", RowKind.SOLID, 12.0, 12.0, met=False)
+    reshaped = replace(asked, scene=replace(asked.scene, reshaped=("Crate",)))
+    report = SimpleNamespace(overlaps=[overlap] * deep)
+    (line,) = note_surfaces(rig, reshaped, report, ())
+    assert line == "Crate changes its shape; what counts is that of frame 1"
+    (row,) = rig.hangtime.surfaces
+    assert (row.met, row.status) == ("MISSED" if deep else "MET", f"{outcome}. {line}")
 
 
 @pytest.mark.slow
