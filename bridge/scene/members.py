@@ -68,13 +68,18 @@ def is_gone(row: HangtimeSurface, scene: bpy.types.Scene) -> bool:
     return row.collection not in collections
 
 
-def objects_of(row: HangtimeSurface) -> Iterator[bpy.types.Object]:
-    """Objects that a row names; of a collection those with faces, without the performer's own."""
+def objects_of(
+    row: HangtimeSurface, performer: bpy.types.Object | None = None
+) -> Iterator[bpy.types.Object]:
+    """Objects that a row names; of a collection those with faces, without the performer's own.
+
+    performer: None for who has the row.
+    """
     if row.object is not None:
         yield row.object
     elif row.collection is not None:
         for each in row.collection.all_objects:
-            if each.type in SOLID_TYPES and not _hangs_on(each, row.id_data):
+            if each.type in SOLID_TYPES and not _hangs_on(each, performer or row.id_data):
                 yield each
 
 

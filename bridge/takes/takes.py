@@ -38,6 +38,7 @@ from ..rows.copying import (
     settings_digest,
     settings_targets,
 )
+from ..scene.surfaces_digest import surfaces_digest
 from .difference import bake_combined, difference_shown
 from .span import ResultSpan
 
@@ -70,16 +71,20 @@ class ListedTake:
 @dataclass(frozen=True)
 class AskedSettings:
     """Settings as they were when a result was asked for, after which the artist may go on changing
-    them. key: their digest."""
+    them. key: their digest. surfaces: that of the surfaces among which they asked for it."""
 
     held: HeldSettings
     key: str
+    surfaces: str
 
     @staticmethod
     def of(settings: HangtimeSettings) -> AskedSettings:
-        """Of what the settings are now, without what solves told of them."""
+        """Of what an armature's settings are now, without what solves told of them."""
         held = held_settings(settings, (*_NOT_KEPT, *OUTCOMES))
-        return AskedSettings(held, settings_digest(settings, _NOT_ASKED))
+        armature = settings.id_data
+        assert isinstance(armature, bpy.types.Object)
+        surfaces = surfaces_digest(settings, armature, {})
+        return AskedSettings(held, settings_digest(settings, _NOT_ASKED), surfaces)
 
 
 def root_of(action: bpy.types.Action) -> bpy.types.Action:
@@ -246,7 +251,7 @@ def note_made(
     asked = asked or AskedSettings.of(settings_of(armature))
     copy_settings(settings_of(armature), made.edit, _NOT_KEPT)
     put_settings(asked.held, made.edit)
-    made.asked_key = asked.key
+    made.asked_key, made.surfaces_key = asked.key, asked.surfaces
     made.asked_targets.clear()
     for target in settings_targets(made.edit, _NOT_ASKED):
         made.asked_targets.add().target = target
@@ -270,6 +275,7 @@ def adapted_spans(action: bpy.types.Action) -> tuple[tuple[float, float], ...]:
 
 TAKE_CHANGED = "The take below has changed"
 EDIT_CHANGED = "The settings have changed"
+SURFACES_CHANGED = "A surface has changed"
 
 
 def look_again(armature: bpy.types.Object) -> bool:
@@ -280,6 +286,7 @@ def look_again(armature: bpy.types.Object) -> bool:
     settings, new = settings_of(armature), False
     keys: dict[bpy.types.Action, str] = {}
     sources: dict[bpy.types.Action, str] = {}
+    surfaces: dict[bpy.types.Object, str] = {}
     for take in takes_of(armature):
         kept = action_settings(take.action)
         if take.source is None or not kept.own_key:
@@ -294,6 +301,8 @@ def look_again(armature: bpy.types.Object) -> bool:
             stale = TAKE_CHANGED
         elif not _asks_the_same(edit, kept):
             stale = EDIT_CHANGED
+        elif kept.surfaces_key and surfaces_digest(edit, armature, surfaces) != kept.surfaces_key:
+            stale = SURFACES_CHANGED
         polished = kept.holds_polish or keys[take.action] != kept.own_key
         if (kept.stale, kept.polished) != (stale, polished):
             kept.stale, kept.polished = stale, polished

@@ -19,6 +19,7 @@ from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.takes import (
     EDIT_CHANGED,
+    SURFACES_CHANGED,
     TAKE_CHANGED,
     adapted_spans,
     look_again,
@@ -40,6 +41,8 @@ from hangtime.operators.solve.takes import left_behind
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap
 from hangtime.tests.blender.helpers import rigs
+from hangtime.tests.blender.helpers.actions import curves_of
+from hangtime.tests.blender.helpers.solids import add_row, make_box
 
 OPTIONS = ResultOptions(blend_in=3.0, blend_out=3.0)
 
@@ -105,6 +108,31 @@ def test_a_second_result_builds_on_the_first(armature: bpy.types.Object) -> None
         (second, first, 2),
         (again, first, 2),
     ]
+
+
+def test_a_result_is_stale_after_a_surface_has_changed(armature: bpy.types.Object) -> None:
+    lift, still = make_box("Lift"), make_box("Crate", (3.0, 0.0, 0.0))
+    for frame, height in ((1, 0.0), (60, 0.3)):
+        lift.location.z = height
+        lift.keyframe_insert("location", frame=frame)
+    for solid in (lift, still):
+        add_row(armature, solid)
+    first, second = (adapt(armature, 10, 20, up) for up in (0.1, 0.2))
+    bpy.context.scene.frame_set(30)  # where the lift is elsewhere
+    look_again(armature)
+    assert (first.hangtime.stale, second.hangtime.stale) == ("", "")
+    (*_, key) = curves_of(lift)[2].keyframe_points
+
+    def change(owner: object, name: str, value: float) -> None:
+        before = getattr(owner, name)
+        for now, stale in ((value, SURFACES_CHANGED), (before, "")):
+            setattr(owner, name, now)
+            assert look_again(armature)
+            assert (first.hangtime.stale, second.hangtime.stale) == (stale, stale)
+
+    change(key.co, "y", 0.5)
+    change(still.location, "x", 2.0)
+    change(still.data.vertices[0].co, "z", -0.7)
 
 
 def test_the_list_of_takes_leaves_the_recordings_name_out(armature: bpy.types.Object) -> None:
