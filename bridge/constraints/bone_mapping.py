@@ -14,6 +14,7 @@ from ...solver.skeleton.tree import tree_of
 from ..accessors import armature_data
 from ..armature.poses import followed_bone
 from ..properties.settings import HangtimePart, HangtimeSettings, settings_of
+from ..rows.copying import rows_named
 
 
 def find_parts(armature: bpy.types.Object) -> None:
@@ -21,14 +22,12 @@ def find_parts(armature: bpy.types.Object) -> None:
     settings = settings_of(armature)
     chosen = chosen_parts(settings)
     bones = named_bones(armature)
-    settings.parts.clear()
     found = guess_bones(tree_of(bones))
     settings.convention = found.convention
-    for label, guess in labels_of(found, bones).items():
-        part = settings.parts.add()
-        part.name = label
-        if guess is not None:
-            part.found, part.evidence = guess[0], guess[1].value
+    labels = labels_of(found, bones)
+    parts = rows_named(settings.parts, list(labels))
+    for part, (label, guess) in zip(parts, labels.items(), strict=True):
+        part.found, part.evidence = ("", "") if guess is None else (guess[0], guess[1].value)
         part.bone = chosen.get(label, part.found)
         part.needed = LABELS[label] in REQUIRED_KEYS
 
@@ -56,7 +55,8 @@ def choose_parts(armature: bpy.types.Object, bones: Mapping[str, str]) -> list[s
     Returns the bones that the armature lacks, whose parts stay as found.
     """
     settings = settings_of(armature)
-    settings.parts.clear()
+    for part in settings.parts:  # none is the artist's choice any more
+        part.bone = part.found
     find_parts(armature)
     there = armature_data(armature).bones
     for part in settings.parts:

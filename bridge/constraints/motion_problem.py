@@ -29,7 +29,7 @@ from ..properties.settings import HangtimeSettings
 from ..properties.stances import place
 from ..repairs.stored import applied, of_recording, unreadable
 from ..repairs.unreadable import require_readable
-from ..rows.copying import resized
+from ..rows.copying import rows_named
 from ..rows.held_contacts import (
     UNMOVED,
     Displacement,
@@ -38,7 +38,7 @@ from ..rows.held_contacts import (
     frame_of,
     movers,
 )
-from ..rows.phases import SAME, phases_of, unseen_frames
+from ..rows.phases import SAME, listed, phases_of, unseen_frames
 from ..scene.members import ground_members, present_members
 from ..takes.options import loop_options, text_of
 from .bone_mapping import chosen_parts
@@ -296,8 +296,8 @@ def write_analysis(
 ) -> tuple[str, ...]:
     """Fills the settings' contacts and stances; contacts that are found again keep their edits.
     Names of those that were edited and are not found any more."""
-    edits = [HeldContact.of(row) for row in settings.contacts if not row.added]
-    added = [HeldContact.of(row) for row in settings.contacts if row.added]
+    edits = [HeldContact.of(row) for row in listed(settings) if not row.added]
+    added = [HeldContact.of(row) for row in listed(settings) if row.added]
     metres = metres_per_unit(current_scene())
     first, rate = span_of(settings, recording)[0], frames_per_second(current_scene())
     settings.measured_height = found.height
@@ -305,17 +305,18 @@ def write_analysis(
     settings.analysed_span = span_of(settings, recording)
     unseen = [[first + u.start * rate, first + u.end * rate] for u in found.schedule.unseen]
     settings.unseen = json.dumps(unseen) if unseen else ""
-    for stance, (name, axes) in zip(
-        resized(settings.stances, len(found.axes)), found.axes.items(), strict=True
-    ):
-        stance.name, stance.shifted, stance.turned = name, (0.0, 0.0, 0.0), 0.0
-        stance.forward_axis = axes[:, 0]
+    stances = rows_named(settings.stances, list(found.axes))
+    for stance, axes in zip(stances, found.axes.values(), strict=True):
+        stance.shifted, stance.turned, stance.forward_axis = (0.0, 0.0, 0.0), 0.0, axes[:, 0]
     contacts = found.schedule.contacts
-    rows = resized(settings.contacts, len(contacts) + len(added))
+    names = [each.name for each in (*contacts, *added)]
+    settings.analysed_contacts = "\n".join((*names, *settings.analysed.splitlines()))
+    rows = rows_named(settings.contacts, names)
+    for row in rows:
+        row.used, row.added, row.surplus, row.empty, row.on = True, False, False, None, None
     for row, contact in zip(rows, contacts, strict=False):
-        row.used, row.added, row.empty, row.on = True, False, None, None
         phase = _ground_phase(found.schedule, contact)
-        row.name, row.point, row.bone = contact.name, contact.point, contact.bone
+        row.point, row.bone = contact.point, contact.bone
         row.phase = phase.name if phase is not None else ""
         row.found_start = row.start_frame = first + contact.start * rate
         row.found_end = row.end_frame = first + contact.end * rate
@@ -381,7 +382,7 @@ def _take_along(
 ) -> None:
     """Contacts that the artist added, with a take that is elsewhere or later."""
     rate = frames_per_second(current_scene())
-    for row in settings.contacts:
+    for row in listed(settings):
         if row.added:
             _put(row, by.contact(HeldContact.of(row)))
             phase = _ground_phase(schedule, _bare_contact(row, first, rate, schedule.duration))

@@ -7,6 +7,7 @@ from bpy.app.handlers import persistent
 
 from ..accessors import ATTRIBUTE, attached, snapshot
 from ..app_handlers import add_handler
+from .overridden_lists import settle_lists
 from .settings import CARRIERS, CLASSES
 
 _ensured = ExitStack()  # what takes back what `ensure_groups` did
@@ -29,7 +30,8 @@ def attach_groups(undo: ExitStack) -> None:
 
 @persistent  # type: ignore[untyped-decorator]  # any, in the stubs
 def complete_overrides(*_of_handlers: object) -> None:
-    """Library overrides and what they override have the same groups, when a file is saved.
+    """Library overrides and what they override have the same groups, when a file is saved, and
+    their lists the same rows.
 
     Of a group that only one of them has, Blender 5 saves that it is another one instead of its
     fields, and cannot read that again: all of it would be lost.
@@ -39,6 +41,8 @@ def complete_overrides(*_of_handlers: object) -> None:
         if thing.library is None and override is not None and snapshot(thing):
             for each in filter(None, (thing, override.reference)):
                 _make_groups(attached(each))
+            if isinstance(override.reference, bpy.types.Object):
+                settle_lists(thing, override.reference)
 
 
 def _make_groups(group: bpy.types.PropertyGroup) -> None:

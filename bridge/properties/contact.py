@@ -36,7 +36,10 @@ def _set_place(row: HangtimeContact, to: Sequence[float]) -> None:
 
 
 class HangtimeContact(bpy.types.PropertyGroup):
-    """A contact as it was found and as the artist wants it; `name` is its own ("Left heel 2")."""
+    """A contact as it was found and as the artist wants it; `name` is its own ("Left heel 2").
+
+    surplus: a linked row, which an override cannot drop, of a contact that is not there.
+    """
 
     COMPUTED = ("place",)  # from what else is stored
 
@@ -49,6 +52,7 @@ class HangtimeContact(bpy.types.PropertyGroup):
     at: hidden(vector())
 
     added: hidden(boolean())  # by the artist
+    surplus: hidden(boolean())
     used: chosen(boolean("Touches", "Whether this contact counts; off removes it", default=True))
     start_frame: chosen(frame("Start", "Frame at which the point begins to carry"))
     end_frame: chosen(frame("End", "Frame at which the point ceases to carry"))
@@ -70,6 +74,11 @@ class HangtimeContact(bpy.types.PropertyGroup):
             poll=has_faces,
         )
     )
+
+    def let_go(self) -> None:
+        """Have it count for nothing; `listed` leaves it out."""
+        self.surplus, self.added, self.used = True, True, False
+        self.phase, self.empty, self.on = "", None, None
 
 
 def _shown(length: float) -> float:

@@ -120,6 +120,9 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     analysed_rate: hidden(number())  # frames/s of the scene then; 0 where no one kept it
     # First and last scene frame that were analysed; both 0 where no one kept them.
     analysed_span: hidden(vector(size=2))
+    # Names of its contacts, and the digest: lines. Without them an override could not tell its own
+    # contacts from what was found in its library since.
+    analysed_contacts: hidden(text())
     unseen: hidden(text())  # JSON: [first, last frame] of each span that something unseen carries
     repairs: hidden(text())  # JSON: those that count, see bridge/repairs
     findings: bpy.props.CollectionProperty(type=HangtimeFinding, override=OVERRIDABLE_LIST)

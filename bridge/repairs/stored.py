@@ -20,7 +20,7 @@ from ..armature.actions import recorded_action
 from ..armature.poses import frames_per_second
 from ..hidden_texts import HiddenText, entries, listed, number, spans_text, whole, word
 from ..properties.settings import HangtimeSettings, settings_of
-from ..rows.copying import resized
+from ..rows.copying import rows_named
 from ..rows.finding import HangtimeFinding
 from ..takes.takes import take_digest
 from .length_keys import stretching_bone
@@ -135,9 +135,9 @@ def write_diagnosis(
     ]
     kinds = [finding.kind for finding, _ in found]
     found = [each for each in kept if each[0].kind not in kinds] + found
-    rows = resized(settings.findings, len(found))
+    rows = rows_named(settings.findings, [finding.kind.value for finding, _ in found])
     for row, (finding, mass) in zip(rows, found, strict=True):
-        row.name, row.amount, row.unit = finding.kind.value, finding.amount, finding.unit
+        row.amount, row.unit, row.surplus = finding.amount, finding.unit, False
         row.frames, row.part, row.mass = json.dumps(finding.frames), finding.part, mass
         row.remedy = text_of(finding.remedy or Repairs())
         row.other = text_of(finding.alternative or Repairs())
@@ -165,7 +165,7 @@ def _told(armature: bpy.types.Object, finding: Finding, mass: float) -> tuple[Fi
 
 def findings(settings: HangtimeSettings) -> list[HangtimeFinding]:
     """The rows of what was found."""
-    return [row for row in settings.findings if row.name and is_finding(row)]
+    return [row for row in settings.findings if is_finding(row) and not row.surplus]
 
 
 def finding_named(settings: HangtimeSettings, kind: str) -> HangtimeFinding | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 from zlib import crc32
@@ -64,7 +64,9 @@ def put_settings(held: HeldSettings, target: Any) -> None:
     that no outcome is forgotten for it."""
     for name, value in held.items():
         if isinstance(value, list):
-            for row, kept in zip(resized(getattr(target, name), len(value)), value, strict=True):
+            names = ["" if kept["name"] is _UNSET else kept["name"] for kept in value]
+            rows = rows_named(getattr(target, name), names)
+            for row, kept in zip(rows, value, strict=True):
                 put_settings(kept, row)
         elif isinstance(value, dict):
             put_settings(value, getattr(target, name))
@@ -141,17 +143,31 @@ def _stored(group: Any, skip: Collection[str]) -> list[tuple[str, object]]:
     return found
 
 
-def resized(rows: Any, count: int) -> list[Any]:
-    """Makes a list that many rows long, the old ones first: these rows.
+def rows_named(rows: Any, names: Sequence[str]) -> list[Any]:
+    """Makes a list's rows those of these names, in order, where they are not, new ones: these rows.
 
-    An override cannot drop rows of the linked file: those left over are switched off.
+    An override can neither drop nor rename rows of the linked file, which would come back when the
+    file is opened: of these the namesakes are taken, wherever they are, and others are let go.
     """
-    while len(rows) < count:
-        rows.add()
-    for i in reversed(range(count, len(rows))):
-        rows.remove(i)
-    for row in rows[count:]:
-        row.name = ""
-        if hasattr(row, "used"):
-            row.used = False
-    return list(rows[:count])
+    if [row.name for row in rows] == list(names):
+        return list(rows)
+    rows.clear()  # but for the linked ones
+    linked, places = list(range(len(rows))), []
+    for name in names:
+        place = next((i for i in linked if rows[i].name == name), None)
+        if place is None:
+            place = len(rows)
+            rows.add().name = name
+        else:
+            linked.remove(place)
+        places.append(place)
+    for i in linked:
+        _let_go(rows[i])
+    return [rows[place] for place in places]
+
+
+def _let_go(row: Any) -> None:
+    if hasattr(row, "let_go"):
+        row.let_go()
+    elif hasattr(row, "used"):
+        row.used = False

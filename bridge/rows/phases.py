@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ...solver.data.contacts import PhaseKind, gaps
 from ..hidden_texts import spans_text
 from .choices import HOLD
-from .protocols import Settings
+from .protocols import ContactRow, Settings
 
 SAME = 1e-3  # frames; single precision keeps frames
 TAKE_OFF = "Take-Off"
@@ -50,6 +50,11 @@ def phases(
     return tuple(sorted(spans, key=lambda span: span.start))
 
 
+def listed(settings: Settings) -> list[ContactRow]:
+    """The contacts that are there, of which some may be switched off."""
+    return [row for row in settings.contacts if not row.surplus]
+
+
 def carried(settings: Settings) -> list[tuple[float, float]]:
     """When contacts that count touch, as the artist has them, or something unseen carries."""
     touching = [(row.start_frame, row.end_frame) for row in settings.contacts if row.used]
@@ -64,10 +69,11 @@ def unseen_frames(settings: Settings) -> list[tuple[float, float]]:
 
 def clip_ends(settings: Settings) -> tuple[float, float] | None:
     """First and last frame of the analysed clip; None before an analysis."""
-    if not settings.contacts:
+    contacts = listed(settings)
+    if not contacts:
         return None
-    first = min(row.found_start for row in settings.contacts)
-    last = max(row.found_end for row in settings.contacts)
+    first = min(row.found_start for row in contacts)
+    last = max(row.found_end for row in contacts)
     if settings.use_range:
         return min(first, settings.first_frame), max(last, settings.last_frame)
     action = recorded_span(settings)

@@ -24,6 +24,7 @@ class ContactRow(Protocol):
     point: str
     bone: str
     added: bool
+    surplus: bool
     phase: str
     used: bool
     found_start: float

@@ -21,6 +21,7 @@ from ..armature.keys_digest import keys_digest
 from ..armature.played import adopt_strip, in_scene_time, strip_time
 from ..armature.traces_store import forget, put_by, take_up
 from ..hidden_texts import spans_text
+from ..properties.overridden_lists import linked_count
 from ..properties.settings import (
     HangtimeAction,
     HangtimeSettings,
@@ -35,6 +36,7 @@ from ..rows.copying import (
     copy_settings,
     held_settings,
     put_settings,
+    rows_named,
     settings_digest,
     settings_targets,
 )
@@ -45,7 +47,7 @@ from .span import ResultSpan
 _OF_RECORDING = ("repairs", "findings", "examined", "examination_stale", "feet")
 _NOT_ASKED = (  # of the next result
     *("marks", "adapted", "source", "status", "met", "measured_height", "fit_quality"),
-    *("shapes_told", "unseen", "analysed_span"),
+    *("shapes_told", "unseen", "analysed_span", "analysed_contacts"),
     *("whole_stance", "active_contact", "active_constraint", "active_surface"),
     "active_body_change",
     *("keep_polish", *_OF_RECORDING),
@@ -214,15 +216,27 @@ def start_from_result(armature: bpy.types.Object, result: bpy.types.Action) -> N
     bake_shown(armature, result)
     settings = settings_of(armature)
     settings.source, settings.adapted = result, None
-    settings.contacts.clear()
-    settings.stances.clear()
-    for index in reversed(range(len(settings.constraints))):
-        if settings.constraints[index].span != Span.ALWAYS.name:
-            settings.constraints.remove(index)
+    rows_named(settings.contacts, ())
+    rows_named(settings.stances, ())
+    _drop_constraints(armature, settings)
     forget(armature)
-    settings.analysed = settings.unseen = settings.fit_quality = settings.status = ""
+    settings.analysed = settings.analysed_contacts = settings.unseen = settings.fit_quality = (
+        settings.status
+    ) = ""
     result.use_fake_user = True
     show(armature, result)
+
+
+def _drop_constraints(armature: bpy.types.Object, settings: HangtimeSettings) -> None:
+    """But for those that always hold; an override's linked ones are switched off."""
+    linked = linked_count(armature, "constraints")
+    for index in reversed(range(len(settings.constraints))):
+        if settings.constraints[index].span == Span.ALWAYS.name:
+            continue
+        if index < linked:
+            settings.constraints[index].used = False
+        else:
+            settings.constraints.remove(index)
 
 
 def start_from_recording(armature: bpy.types.Object) -> None:

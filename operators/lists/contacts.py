@@ -6,6 +6,7 @@ import numpy as np
 from ...bridge.accessors import present
 from ...bridge.armature.poses import metres_per_unit
 from ...bridge.armature.traces_store import kept
+from ...bridge.properties.overridden_lists import linked_count
 from ...bridge.properties.settings import scene_settings, settings_of
 from ...bridge.properties.stances import active_contact, active_stance, join, put_back
 from ...bridge.rows.protocols import ContactRow
@@ -88,9 +89,10 @@ class RemoveContactOperator(_OfContact, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
-        settings = settings_of(required_armature(context))
-        row = present(active_contact(settings))
-        if row.added:
+        armature = required_armature(context)
+        settings = settings_of(armature)
+        row, linked = present(active_contact(settings)), linked_count(armature, "contacts")
+        if row.added and settings.active_contact >= linked:
             settings.contacts.remove(settings.active_contact)
             settings.active_contact = min(settings.active_contact, len(settings.contacts) - 1)
         else:

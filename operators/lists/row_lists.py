@@ -8,8 +8,8 @@ from typing import Any
 import bpy
 
 from ...bridge.accessors import armature_data, pose_of
-from ...bridge.constraints.linked_rows import linked_count
 from ...bridge.properties.constraint import HangtimeConstraint
+from ...bridge.properties.overridden_lists import linked_count
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ..operator_types import OperatorResult, PolledOperator
 from ..solve.common import LINKED, chosen_armature, required_armature

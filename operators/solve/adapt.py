@@ -35,6 +35,7 @@ from ...bridge.recipe.result import require_return_after, require_return_within
 from ...bridge.repairs.stored import undoubted
 from ...bridge.rows.aimed_requests import apart_from_aimed, require_unaimed
 from ...bridge.rows.choices import LoopRoot, WrittenAs
+from ...bridge.rows.phases import listed
 from ...bridge.takes.options import loop_options, result_options
 from ...bridge.takes.takes import AskedSettings
 from ...bridge.takes.write_result import (
@@ -74,7 +75,7 @@ NOT_ANALYSED = "Press Analyze first: there are no contacts to hold or move"
 def unanalysed(context: bpy.types.Context) -> str | None:
     """Precondition: why there is nothing to adapt, in a sentence; None where there is."""
     why = hindrance(context)
-    if why is None and not settings_of(required_armature(context)).contacts:
+    if why is None and not listed(settings_of(required_armature(context))):
         return NOT_ANALYSED
     return why
 

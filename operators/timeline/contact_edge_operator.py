@@ -4,7 +4,7 @@ import bpy
 
 from ...bridge.accessors import present
 from ...bridge.properties.settings import HangtimeSettings, settings_of
-from ...bridge.rows.phases import carried, clip_ends, phases
+from ...bridge.rows.phases import carried, clip_ends, listed, phases
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
 from ..solve.common import chosen_armature, required_armature
@@ -28,7 +28,7 @@ class _OfKnownContacts(PolledOperator):
     @classmethod
     def obstacle(cls, context: bpy.types.Context) -> str | None:
         armature = chosen_armature(context)
-        known = armature is not None and len(settings_of(armature).contacts) > 0
+        known = armature is not None and bool(listed(settings_of(armature)))
         return None if known else NOTHING_TO_RETIME
 
 

@@ -51,6 +51,8 @@ def rows_of(settings: HangtimeSettings, shown: Callable[[float], float]) -> tupl
         return wrong
     points: dict[str, list[Bar]] = {}
     for index, row in enumerate(settings.contacts):
+        if row.surplus:
+            continue
         chosen = index == settings.active_contact
         bar = Bar(row.name, shown(row.start_frame), shown(row.end_frame), row.used, chosen)
         points.setdefault(row.point, []).append(bar)

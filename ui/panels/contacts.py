@@ -5,6 +5,7 @@ import bpy
 from ...bridge.accessors import present
 from ...bridge.properties.settings import settings_of
 from ...bridge.properties.stances import active_contact, active_stance
+from ...bridge.rows.phases import listed
 from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
 from .lists import ContactList, StanceList, called
@@ -22,7 +23,7 @@ class ContactsPanel(ArmaturePanel):
     def draw(self, context: bpy.types.Context) -> None:
         layout = present(self.layout)
         settings = settings_in(context)
-        if not settings.contacts:
+        if not listed(settings):
             layout.label(text=NONE_FOUND if settings.analysed else NOT_SOUGHT, icon="INFO")
             return
         draw_list(layout, StanceList, settings, "stances", rows=3)
@@ -65,7 +66,7 @@ class StanceContactsPanel(ArmaturePanel):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         armature = chosen_armature(context)
-        return armature is not None and len(settings_of(armature).contacts) > 0
+        return armature is not None and bool(listed(settings_of(armature)))
 
     def draw_header(self, context: bpy.types.Context) -> None:
         settings = settings_in(context)

@@ -4,8 +4,8 @@ import bpy
 
 from ...bridge.accessors import current_action, present
 from ...bridge.constraint_kinds import KINDS
-from ...bridge.constraints.linked_rows import linked_count
 from ...bridge.properties.contact import HangtimeContact, HangtimeStance
+from ...bridge.properties.overridden_lists import linked_count
 from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
 from ...bridge.properties.stances import active_stance, stance_frames
 from ...bridge.properties.surface import HangtimeSurface
@@ -164,7 +164,7 @@ class ContactList(bpy.types.UIList):
         shown = None if stance is None else stance.name
         named = {row.name for row in settings.stances}
         rows = getattr(settings, name)
-        kept = [row.phase == shown or row.phase not in named for row in rows]
+        kept = [not row.surplus and (row.phase == shown or row.phase not in named) for row in rows]
         return [self.bitflag_filter_item if keep else 0 for keep in kept], []
 
 

@@ -12,6 +12,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 from hangtime.bridge.accessors import current_action, snapshot
 from hangtime.bridge.armature.keys_digest import keys_digest
 from hangtime.bridge.armature.poses import sample
+from hangtime.bridge.rows.phases import listed
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 
@@ -55,6 +56,68 @@ def test_an_override_of_an_analysed_armature_is_analysed_again(
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
     assert len(override.hangtime.contacts) == count
     assert override.hangtime.contacts["Left heel 2"].used
+
+
+def saved_again(path: Path) -> bpy.types.Object:
+    """The override, active, of a file that is saved and opened again."""
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+    return bpy.context.view_layer.objects.active
+
+
+def contacts_of(armature: bpy.types.Object) -> list[tuple[str, float]]:
+    return sorted((row.name, row.found_start) for row in listed(armature.hangtime))
+
+
+def test_an_override_lets_go_of_contacts_that_only_its_library_found(
+    analysed: bpy.types.Object, tmp_path: Path
+) -> None:
+    found = contacts_of(analysed)
+    analysed.hangtime.stances.add().name = "ground 3"
+    extra = analysed.hangtime.contacts.add()
+    extra.name, extra.point, extra.phase, extra.found_start = "Hand 1", "Hand", "ground 3", 900.0
+    override = overridden(analysed, tmp_path / "library.blend")
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert contacts_of(override) == found
+    again = saved_again(tmp_path / "shot.blend")
+    assert contacts_of(again) == found
+    assert len(again.hangtime.parts) == len({part.name for part in again.hangtime.parts})
+
+
+def test_what_is_analysed_in_the_library_later_leaves_an_overrides_own_analysis(
+    analysed: bpy.types.Object, tmp_path: Path
+) -> None:
+    library = tmp_path / "library.blend"
+    analysed.property_unset("hangtime")
+    override = overridden(analysed, library)
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    own = dict(contacts_of(override))
+    stances = [stance.name for stance in override.hangtime.stances]
+    override.hangtime.stances["ground 2"].up = 0.05
+    override.hangtime.constraints.add().name = "Mine"
+    shot = tmp_path / "shot.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(shot))
+
+    bpy.ops.wm.open_mainfile(filepath=str(library))
+    theirs = bpy.context.view_layer.objects.active
+    for name in (*own, "Hand 1"):
+        theirs.hangtime.contacts.add().name = name
+    for name in (*stances, "ground 3"):
+        theirs.hangtime.stances.add().name = name
+    theirs.hangtime.constraints.add().name = "Theirs"
+    theirs.hangtime.analysed_contacts = "another analysis"
+    bpy.ops.wm.save_mainfile()
+
+    bpy.ops.wm.open_mainfile(filepath=str(shot))
+    again = bpy.context.view_layer.objects.active
+    assert contacts_of(again) == sorted(own.items())
+    assert again.hangtime.stances["ground 2"].up == pytest.approx(0.05)
+    assert [row.name for row in again.hangtime.constraints] == ["Theirs", "Mine"]
+    again.hangtime.active_constraint = 1
+    assert bpy.ops.hangtime.remove_constraint() == {"FINISHED"}
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert contacts_of(again) == sorted(own.items())
+    assert again.hangtime.stances["ground 2"].up == pytest.approx(0.05)
 
 
 @pytest.mark.slow

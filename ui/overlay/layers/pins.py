@@ -10,7 +10,7 @@ from ....bridge.constraint_kinds import point
 from ....bridge.constraints.motion_problem import moved
 from ....bridge.properties.constraint import HangtimeConstraint
 from ....bridge.properties.contact import HangtimeContact
-from ....bridge.rows.phases import roles
+from ....bridge.rows.phases import listed, roles
 from ....bridge.rows.times import Frames
 from ....solver.data.requests import PointAxes
 from ..context.layer import IDENTITY, Layer, Part, xyz
@@ -27,7 +27,8 @@ SHIFTED = 1e-3  # Blender units
 def contacts(view: ViewContext) -> Layer:
     """The contacts, in the world."""
     chosen = view.settings.active_contact
-    pins = tuple(_contact(view, r, i == chosen) for i, r in enumerate(view.settings.contacts))
+    rows = [each for each in enumerate(view.settings.contacts) if not each[1].surplus]
+    pins = tuple(_contact(view, row, i == chosen) for i, row in rows)
     labels = tuple(_labels(view))
     content = pins, labels, view.units
     return Layer(Part.CONTACTS, content, lambda: (*shapes(pins, view.units), *labels), IDENTITY)
@@ -143,7 +144,7 @@ def _ends(low: float | None, high: float | None, reach: float) -> tuple[float, f
 
 
 def _floor(view: ViewContext) -> float:
-    return min((row.found_at[2] for row in view.settings.contacts), default=0.0)
+    return min((row.found_at[2] for row in listed(view.settings)), default=0.0)
 
 
 def _axes(view: ViewContext, row: HangtimeConstraint) -> Matrix:
