@@ -39,6 +39,7 @@ from ..rows.held_contacts import (
     movers,
 )
 from ..rows.phases import SAME, listed, phases_of, unseen_frames
+from ..rows.protocols import ContactRow
 from ..scene.members import ground_members, present_members
 from ..takes.options import loop_options, text_of
 from .bone_mapping import chosen_parts
@@ -279,7 +280,7 @@ def moved(row: HangtimeContact) -> bool:
     return any(abs(a - b) > UNMOVED for a, b in zip(row.at, row.found_at, strict=True))
 
 
-def _bare_contact(row: HangtimeContact, first: float, rate: float, duration: float) -> Contact:
+def _bare_contact(row: ContactRow, first: float, rate: float, duration: float) -> Contact:
     """When a row's point touches, after the artist's correction; nowhere in particular."""
     start = max((row.start_frame - first) / rate, 0.0)
     end = min((row.end_frame - first) / rate, duration)
@@ -309,7 +310,7 @@ def write_analysis(
     for stance, axes in zip(stances, found.axes.values(), strict=True):
         stance.shifted, stance.turned, stance.forward_axis = (0.0, 0.0, 0.0), 0.0, axes[:, 0]
     contacts = found.schedule.contacts
-    names = [each.name for each in (*contacts, *added)]
+    names = [contact.name for contact in contacts] + [held.name for held in added]
     settings.analysed_contacts = "\n".join((*names, *settings.analysed.splitlines()))
     rows = rows_named(settings.contacts, names)
     for row in rows:
@@ -344,7 +345,7 @@ def _choose_first_landing(settings: HangtimeSettings) -> None:
     settings.active_contact = phases.index(landing) if landing in phases else 0
 
 
-def _put(row: HangtimeContact, held: HeldContact) -> None:
+def _put(row: ContactRow, held: HeldContact) -> None:
     for name, value in vars(held).items():
         setattr(row, name, value)
 

@@ -333,8 +333,9 @@ def _get_called(made: HangtimeAction) -> str:
 
 
 def _set_called(made: HangtimeAction, to: str) -> None:
-    if to not in ("", _get_called(made)):
-        present(made.id_data).name = to
+    action = present(made.id_data)
+    if to not in ("", _get_called(made)) and action.is_editable:  # a linked one keeps its name
+        action.name = to
 
 
 class HangtimeAction(bpy.types.PropertyGroup):

@@ -58,4 +58,4 @@ def _results(scene: bpy.types.Scene) -> list[tuple[bpy.types.Object, bpy.types.A
     """All results of a scene's armatures."""
     made = (a for a in bpy.data.actions if source_of(a) is not None and not lost_slot(a))
     pairs = ((action_settings(action).maker, action) for action in made)
-    return [(o, action) for o, action in pairs if o is not None and scene.objects.get(o.name) == o]
+    return [(o, action) for o, action in pairs if o is not None and scene in o.users_scene]

@@ -13,6 +13,7 @@ from ...bridge.takes.takes import (
     show_take,
     start_from_recording,
     start_from_result,
+    takes_of,
 )
 from ...solver.data.faults import BadRecipe
 from ..names import OperatorId
@@ -53,6 +54,7 @@ class ShowTakeOperator(PolledOperator, bpy.types.Operator):
     bl_description = "Show this take, with the settings it was made with"
     bl_options = {"UNDO"}
 
+    # By its full name, which tells the library; by its name alone among the armature's takes.
     action: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     # Between a result and what it was made from nothing else changes.
     switch: bpy.props.BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
@@ -62,10 +64,10 @@ class ShowTakeOperator(PolledOperator, bpy.types.Operator):
         return unready(context)
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
-        action = bpy.data.actions.get(self.action)
+        armature = required_armature(context)
+        action = _named(armature, self.action)
         if action is None:
             return self.refuse(GONE.format(self.action))
-        armature = required_armature(context)
         performer = action_settings(action).performer
         if performer not in (None, armature):
             return self.refuse(BESIDE.format(performer.name, action.name))
@@ -75,6 +77,14 @@ class ShowTakeOperator(PolledOperator, bpy.types.Operator):
             show_take(armature, action)
         look_again(armature)
         return {"FINISHED"}
+
+
+def _named(armature: bpy.types.Object, name: str) -> bpy.types.Action | None:
+    """The action of a name, which another character may have, too: the armature's take first."""
+    own = [take.action for take in takes_of(armature)]
+    found = [a for a in own if a.name_full == name] or [a for a in own if a.name == name]
+    found = found or [a for a in bpy.data.actions if a.name_full == name]
+    return found[0] if found else None
 
 
 class StartFromOperator(ReadyOperator, bpy.types.Operator):

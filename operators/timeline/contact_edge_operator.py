@@ -74,7 +74,8 @@ class DragContactEdgeOperator(_OfKnownContacts, bpy.types.Operator):
         drag.slack = FOLLOW_AFTER * bars.scale / bars.axis.per_unit
         drag.begin(bars.axis.value(x))
         self._drag, self._axis = drag, bars.axis
-        self._armature, self._selected = required_armature(context).name, settings.active_contact
+        armature = required_armature(context)
+        self._armature, self._selected = armature.session_uid, settings.active_contact
         self._choose(settings, grip)
         self.contact, self.edge = grip.bar.name, grip.edge.name
         present(context.window).cursor_modal_set("MOVE_X")
@@ -122,7 +123,7 @@ class DragContactEdgeOperator(_OfKnownContacts, bpy.types.Operator):
             settings.active_contact = index
 
     def _settings(self) -> HangtimeSettings | None:
-        armature = bpy.data.objects.get(self._armature)
+        armature = next((o for o in bpy.data.objects if o.session_uid == self._armature), None)
         return settings_of(armature) if armature is not None else None
 
     def _show(self, context: bpy.types.Context) -> None:

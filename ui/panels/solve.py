@@ -146,7 +146,7 @@ class ResultPanel(ArmaturePanel):
         for text, action in zip(("Recording", "Result"), compared(armature) or (), strict=False):
             pressed = current_action(armature) == action
             show = row.operator(OperatorId.SHOW_TAKE, text=text, depress=pressed)
-            show.action, show.switch = action.name, True
+            show.action, show.switch = action.name_full, True
 
     @staticmethod
     def _draw_takes(
@@ -158,10 +158,12 @@ class ResultPanel(ArmaturePanel):
             row = column.row(align=True)
             icon: Icon = "RADIOBUT_ON" if take.shown else "RADIOBUT_OFF"
             show = row.operator(OperatorId.SHOW_TAKE, text="", icon=icon, emboss=False)
-            show.action = take.action.name
+            show.action = take.action.name_full
             for _ in range(take.depth - 1):
                 row.label(text="", icon="BLANK1")
-            row.prop(action_settings(take.action), "called", text="", emboss=False)
+            name = row.row(align=True)
+            name.enabled = take.action.is_editable
+            name.prop(action_settings(take.action), "called", text="", emboss=False)
             end = row.row(align=True)
             end.alignment = "RIGHT"
             if take.source is None:

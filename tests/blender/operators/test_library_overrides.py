@@ -120,6 +120,24 @@ def test_what_is_analysed_in_the_library_later_leaves_an_overrides_own_analysis(
     assert again.hangtime.stances["ground 2"].up == pytest.approx(0.05)
 
 
+def test_a_linked_take_is_shown_though_another_one_has_its_name(
+    jump: bpy.types.Object, tmp_path: Path
+) -> None:
+    override = overridden(jump, tmp_path / "library.blend")
+    take = current_action(override)
+    assert bpy.data.actions.new(take.name).name == take.name
+    for name in (take.name, take.name_full):
+        assert bpy.ops.hangtime.show_take(action=name) == {"FINISHED"}
+        assert current_action(override) == take
+
+
+def test_a_linked_take_keeps_its_name(jump: bpy.types.Object, tmp_path: Path) -> None:
+    take = current_action(overridden(jump, tmp_path / "library.blend"))
+    before = take.name
+    take.hangtime.called = "Another"
+    assert take.name == before
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("written_as", ["ACTION", "STRIP", "COMBINE"])
 def test_an_overrides_linked_recording_is_adapted_and_its_result_saved(
