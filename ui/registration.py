@@ -12,6 +12,7 @@ from ..bridge.accessors import present
 from ..bridge.app_handlers import add_handler
 from ..bridge.properties import settings, stances
 from ..bridge.properties.attached_groups import attach_groups, release_groups
+from ..bridge.properties.deleted_objects import leave_out_of_files
 from ..operators import names
 from ..operators.drag import limit_operator, pin_operator, turn_stance
 from ..operators.export import export_takes, recipe_export, save_plots
@@ -81,6 +82,7 @@ def register() -> Callable[[], None]:
             bpy.utils.register_class(cls)
             undo.callback(bpy.utils.unregister_class, cls)
         attach_groups(undo)
+        leave_out_of_files(undo)
         for follow in (_follow_empties, watch.follow_takes):
             add_handler(undo, bpy.app.handlers.depsgraph_update_post, follow)
         add_handler(undo, bpy.app.handlers.load_post, session.forget_file)

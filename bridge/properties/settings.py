@@ -342,7 +342,8 @@ class HangtimeAction(bpy.types.PropertyGroup):
     """Of an adapted action: the take that it was made from, how, and what was found.
 
     unfilled: of a recording into which missing frames were put, the one without.
-    maker: the armature whose settings asked for it. count: how many results there were, itself
+    maker: the armature whose settings asked for it. owned: whether there was one, who may be
+    deleted; earlier versions did not keep it. count: how many results there were, itself
     included, when it was made. edit: what was asked for, and the artist's changes to that since.
     next_edit: of a take from which nothing is made yet. asked_key, take_key, own_key: digests of
     the settings, of the take's keys and of its own when it was made. asked_targets: the data-blocks
@@ -355,6 +356,7 @@ class HangtimeAction(bpy.types.PropertyGroup):
     recording: declared(target(type=bpy.types.Action), options=HIDDEN)
     unfilled: declared(target(type=bpy.types.Action), options=HIDDEN)
     maker: declared(target(), options=HIDDEN)
+    owned: declared(boolean(), options=HIDDEN)
     count: declared(whole(), options=HIDDEN)
     edit: bpy.props.PointerProperty(type=HangtimeSettings, options=HIDDEN)
     next_edit: bpy.props.PointerProperty(type=HangtimeSettings, options=HIDDEN)

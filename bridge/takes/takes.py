@@ -100,7 +100,7 @@ def root_of(action: bpy.types.Action) -> bpy.types.Action:
 def derive(action: bpy.types.Action, source: bpy.types.Action, armature: bpy.types.Object) -> None:
     """Note that an armature's settings made an action from a take: it is a result now."""
     made = action_settings(action)
-    made.recording, made.maker = source, armature
+    made.recording, made.maker, made.owned = source, armature, True
     action[HOLDS] = True
     adopt_strip(armature, source)
     made.count = 1 + max(action_settings(other).count for other in bpy.data.actions)
@@ -149,12 +149,16 @@ def results_from(
 ) -> list[bpy.types.Action]:
     """The results that were made from a take, the newest last. armature: for which; None for any.
 
-    Those of earlier versions do not tell for which.
+    Those of earlier versions do not tell for which; those of a deleted one are of none.
     """
     found = [o for o in bpy.data.actions if source_of(o) == action and not lost_slot(o)]
     if armature is not None:
-        found = [o for o in found if action_settings(o).maker in (None, armature)]
+        found = [o for o in found if _is_of(action_settings(o), armature)]
     return sorted(found, key=lambda other: int(action_settings(other).count))
+
+
+def _is_of(made: HangtimeAction, armature: bpy.types.Object) -> bool:
+    return bool(made.maker == armature or (made.maker is None and not made.owned))
 
 
 def show_take(armature: bpy.types.Object, action: bpy.types.Action) -> None:

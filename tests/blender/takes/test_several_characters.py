@@ -1,0 +1,66 @@
+"""Takes of characters that have a recording in common, were copied, or deleted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.accessors import current_action
+from hangtime.bridge.takes.takes import derive, takes_of
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+def result_for(armature: bpy.types.Object) -> bpy.types.Action:
+    """A result of what the armature performs, which stays in the file."""
+    recording = current_action(armature)
+    result = recording.copy()
+    result.name, result.use_fake_user = "Result", True
+    derive(result, recording, armature)
+    armature.hangtime.adapted = result
+    return result
+
+
+def actions_of(armature: bpy.types.Object) -> list[str]:
+    return [take.action.name for take in takes_of(armature)]
+
+
+def copied(armature: bpy.types.Object) -> bpy.types.Object:
+    """By Alt-D: the same recording, and the same edit at work."""
+    bpy.context.view_layer.objects.active = armature
+    armature.select_set(True)
+    bpy.ops.object.duplicate(linked=True)
+    return bpy.context.view_layer.objects.active
+
+
+def test_results_for_a_deleted_character_are_not_another_ones(
+    armature: bpy.types.Object,
+) -> None:
+    other, recording = copied(armature), current_action(armature).name
+    result_for(armature)
+    assert actions_of(armature) == [recording, "Result"]
+    bpy.data.objects.remove(armature)
+    assert actions_of(other) == [recording]
+
+
+def test_a_deleted_character_is_left_out_of_the_file_and_comes_back_by_undo(
+    armature: bpy.types.Object, tmp_path: Path
+) -> None:
+    name, path = armature.name, str(tmp_path / "scene.blend")
+    result_for(armature)
+    before = actions_of(armature)
+    bpy.context.scene.hangtime.armature = armature
+    bpy.context.preferences.edit.use_global_undo = True
+    bpy.ops.ed.undo_push()
+    armature.select_set(True)
+    assert bpy.ops.object.delete() == {"FINISHED"}
+    bpy.ops.ed.undo_push()
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.ed.undo()
+    assert actions_of(bpy.data.objects[name]) == before
+    bpy.ops.wm.open_mainfile(filepath=path)
+    assert name not in bpy.data.objects
+    assert "Result" in bpy.data.actions
