@@ -13,6 +13,7 @@ from ..bridge.app_handlers import add_handler
 from ..bridge.properties import settings, stances
 from ..bridge.properties.attached_groups import attach_groups, release_groups
 from ..bridge.properties.deleted_objects import leave_out_of_files
+from ..bridge.takes.takes import adopt_copied_slots
 from ..operators import names
 from ..operators.drag import limit_operator, pin_operator, turn_stance
 from ..operators.export import export_takes, recipe_export, save_plots
@@ -83,7 +84,7 @@ def register() -> Callable[[], None]:
             undo.callback(bpy.utils.unregister_class, cls)
         attach_groups(undo)
         leave_out_of_files(undo)
-        for follow in (_follow_empties, watch.follow_takes):
+        for follow in (_follow_objects, watch.follow_takes):
             add_handler(undo, bpy.app.handlers.depsgraph_update_post, follow)
         add_handler(undo, bpy.app.handlers.load_post, session.forget_file)
         undo.callback(watch.forget)
@@ -112,10 +113,14 @@ def _add_worker(undo: ExitStack) -> None:
 
 
 @persistent  # type: ignore[untyped-decorator]  # any, in the stubs
-def _follow_empties(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+def _follow_objects(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """Empties that were moved, and armatures that were copied."""
     for update in depsgraph.updates:
         if update.is_updated_transform and isinstance(update.id, bpy.types.Object):
-            stances.follow(present(update.id.original))
+            thing = present(update.id.original)
+            stances.follow(thing)
+            if thing.type == "ARMATURE":
+                adopt_copied_slots(thing)
 
 
 def _run_command(arguments: list[str]) -> int:

@@ -171,6 +171,11 @@ def follow(empty: bpy.types.Object) -> None:
             place(settings, row, to.to_tuple())
 
 
+def may_mark(empty: bpy.types.Object, armature: bpy.types.Object) -> bool:
+    """Whether an empty marks an armature's contact; of a copied one it marks the original's."""
+    return getattr(attached(empty), "marks", None) in (None, armature)
+
+
 def move_empties(settings: Settings) -> None:
     """Puts the empties that mark contacts to where the contacts are."""
     for row in settings.contacts:
@@ -186,7 +191,9 @@ def _put(row: ContactRow, to: Vector) -> None:
 
 def _move_empty(row: ContactRow) -> None:
     to = Vector(row.at)
-    if row.empty is None or (row.empty.matrix_world.translation - to).length <= _SAME:
+    if row.empty is None or not may_mark(row.empty, row.id_data):
+        return
+    if (row.empty.matrix_world.translation - to).length <= _SAME:
         return
     world = row.empty.matrix_world.copy()
     world.translation = to

@@ -36,6 +36,9 @@ class ContactRow(Protocol):
     empty: Any
     on: Any
 
+    @property
+    def id_data(self) -> Any: ...  # the armature, or an action
+
 
 class StanceRow(Protocol):
     """A stance: its shift (3,) along forward, left and up, and its turn, rad."""

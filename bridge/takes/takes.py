@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import bpy
 
 from ..accessors import HOLDS, current_action, source_of
-from ..action_slots import lost_slot
+from ..action_slots import copied_results, lost_slot, settle_copy
 from ..armature.actions import recorded_action, show
 from ..armature.fcurves import slot_identifier
 from ..armature.keys_digest import keys_digest
@@ -106,6 +106,27 @@ def derive(action: bpy.types.Action, source: bpy.types.Action, armature: bpy.typ
     made.count = 1 + max(action_settings(other).count for other in bpy.data.actions)
 
 
+def adopt_copied_slots(armature: bpy.types.Object) -> None:
+    """Where an armature was copied with its action (Shift-D), in which results are slots: has it
+    results of its own of these slots' copies, which would be taken for recordings."""
+    settings, data = settings_of(armature), armature.animation_data
+    known = settings.adapted or settings.source
+    action = data.action if data is not None else None
+    if known is None or action is None or action.library is not None:
+        return
+    copies = copied_results(action, known)
+    own = {result: result.copy() for result in copies}
+    for result, copy in own.items():
+        settle_copy(copy, (action, copies[result]))
+        copy.use_fake_user = result.use_fake_user
+        made = action_settings(copy)
+        made.recording = own.get(made.recording, action)
+        made.maker, made.owned = armature, True
+    if own:
+        settings.adapted = own.get(settings.adapted, settings.adapted)
+        settings.source = own.get(settings.source, settings.source)
+
+
 def free_name(root: str, word: str) -> str:
     """A name for a new action that is made from a recording: "jump adapted", then "jump adapted 2".
 
@@ -176,14 +197,21 @@ def show_take(armature: bpy.types.Object, action: bpy.types.Action) -> None:
 def keep_edit(armature: bpy.types.Object) -> None:
     """Put the edit at work down with the result that it led to, or with the take it is about."""
     settings, source = settings_of(armature), recorded_action(armature)
-    if settings.adapted is not None:
-        copy_settings(settings, action_settings(settings.adapted).edit, _NOT_KEPT)
+    result = _own_result(armature)
+    if result is not None:
+        copy_settings(settings, action_settings(result).edit, _NOT_KEPT)
     elif source is not None:
         source[HOLDS] = True
         copy_settings(settings, action_settings(source).next_edit, _NOT_KEPT)
-    owner = settings.adapted or source
+    owner = result or source
     if owner is not None:
         put_by(armature, owner)
+
+
+def _own_result(armature: bpy.types.Object) -> bpy.types.Action | None:
+    """The result of the edit at work; a copied armature points to one whose edit is another's."""
+    result: bpy.types.Action | None = settings_of(armature).adapted
+    return result if result is not None and _is_of(action_settings(result), armature) else None
 
 
 def _take_up(armature: bpy.types.Object, action: bpy.types.Action) -> None:
@@ -301,7 +329,7 @@ def look_again(armature: bpy.types.Object) -> bool:
 
     Returns whether anything is new.
     """
-    settings, new = settings_of(armature), False
+    settings, own, new = settings_of(armature), _own_result(armature), False
     keys: dict[bpy.types.Action, str] = {}
     sources: dict[bpy.types.Action, str] = {}
     surfaces: dict[bpy.types.Object, str] = {}
@@ -313,7 +341,7 @@ def look_again(armature: bpy.types.Object) -> bool:
             keys[take.action] = _digest(take.action)
         if take.source not in sources:
             sources[take.source] = take_digest(armature, take.source)
-        edit = settings if take.action == settings.adapted else kept.edit
+        edit = settings if take.action == own else kept.edit
         stale = ""
         if sources[take.source] != kept.take_key:
             stale = TAKE_CHANGED

@@ -8,7 +8,7 @@ from ...bridge.armature.poses import metres_per_unit
 from ...bridge.armature.traces_store import kept
 from ...bridge.properties.overridden_lists import linked_count
 from ...bridge.properties.settings import scene_settings, settings_of
-from ...bridge.properties.stances import active_contact, active_stance, join, put_back
+from ...bridge.properties.stances import active_contact, active_stance, join, may_mark, put_back
 from ...bridge.rows.protocols import ContactRow
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
@@ -109,7 +109,8 @@ class PlaceByEmptyOperator(_OfContact, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature, layer = required_armature(context), present(context.view_layer)
         row = present(active_contact(settings_of(armature)))
-        if row.empty is None or row.empty.name not in layer.objects:
+        there = row.empty is not None and row.empty.name in layer.objects
+        if not (there and may_mark(row.empty, armature)):
             row.empty = _new_empty(context, row)
             settings_of(row.empty).marks = armature
         if context.mode == "OBJECT":

@@ -91,6 +91,26 @@ def test_the_result_is_a_slot_and_the_take_beside_it_is_as_it_was(
 
 
 @with_slots
+def test_a_copied_character_has_a_slot_and_a_result_of_its_own(armature: bpy.types.Object) -> None:
+    result, shown = lifted(armature, 0.1), sample(armature, FRAMES).matrices
+    armature.select_set(True)
+    bpy.context.view_layer.objects.active = armature
+    bpy.ops.object.duplicate()
+    copy = bpy.context.view_layer.objects.active
+    action = copy.animation_data.action
+    assert action != armature.animation_data.action
+    own = copy.hangtime.adapted
+    assert own not in (None, result)
+    assert [take.action for take in takes_of(copy)] == [action, own]
+    assert recorded_action(copy) == action
+    np.testing.assert_array_equal(sample(copy, FRAMES).matrices, shown)
+    show(copy, action)
+    assert copy.animation_data.action_slot.name_display != result.name
+    assert current_action(armature) == result
+    np.testing.assert_array_equal(sample(armature, FRAMES).matrices, shown)
+
+
+@with_slots
 def test_the_take_read_while_its_result_is_shown_is_the_take(armature: bpy.types.Object) -> None:
     before = sample(armature, FRAMES).matrices
     result = lifted(armature, 0.1)

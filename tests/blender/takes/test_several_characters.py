@@ -9,7 +9,7 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import current_action
-from hangtime.bridge.takes.takes import derive, takes_of
+from hangtime.bridge.takes.takes import derive, start_from_result, takes_of
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 
@@ -44,6 +44,17 @@ def test_results_for_a_deleted_character_are_not_another_ones(
     assert actions_of(armature) == [recording, "Result"]
     bpy.data.objects.remove(armature)
     assert actions_of(other) == [recording]
+
+
+def test_a_copied_character_leaves_the_edit_of_the_originals_result_alone(
+    armature: bpy.types.Object,
+) -> None:
+    result = result_for(armature)
+    result.hangtime.edit.mass = 60.0
+    copy = copied(armature)
+    copy.hangtime.mass = 50.0
+    start_from_result(copy, result)
+    assert result.hangtime.edit.mass == 60.0
 
 
 def test_a_deleted_character_is_left_out_of_the_file_and_comes_back_by_undo(

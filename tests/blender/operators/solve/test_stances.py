@@ -183,6 +183,26 @@ def test_an_empty_that_was_deleted_is_replaced(analysed: bpy.types.Object) -> No
     np.testing.assert_allclose(row.empty.location, row.place, atol=1e-6)
 
 
+def test_a_copied_character_leaves_the_originals_empty_alone(analysed: bpy.types.Object) -> None:
+    row = landing(analysed.hangtime)[0]
+    analysed.hangtime.active_contact = analysed.hangtime.contacts.find(row.name)
+    bpy.ops.hangtime.place_by_empty()
+    empty, place = row.empty, tuple(row.empty.location)
+    empty.select_set(False)
+    analysed.select_set(True)
+    bpy.context.view_layer.objects.active = analysed
+    bpy.ops.object.duplicate()
+    copy = bpy.context.view_layer.objects.active
+    copy.hangtime.stances["ground 2"].forward = 0.3
+    bpy.context.view_layer.update()
+    assert tuple(empty.location) == place
+    assert analysed.hangtime.stances["ground 2"].forward == 0.0
+    bpy.ops.hangtime.place_by_empty()
+    own = bpy.context.view_layer.objects.active
+    assert own not in (empty, copy)
+    np.testing.assert_allclose(own.location, landing(copy.hangtime)[0].place, atol=1e-6)
+
+
 def test_pins_call_contacts_what_they_are_called_after_the_corrections(
     analysed: bpy.types.Object,
 ) -> None:
