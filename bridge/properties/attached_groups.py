@@ -43,6 +43,7 @@ def complete_overrides(*_of_handlers: object) -> None:
                 _make_groups(attached(each))
             if isinstance(override.reference, bpy.types.Object):
                 settle_lists(thing, override.reference)
+                override.operations_update()  # else a resync puts the rows back that were joined
 
 
 def _make_groups(group: bpy.types.PropertyGroup) -> None:

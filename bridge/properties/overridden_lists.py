@@ -36,9 +36,9 @@ def settle_lists(override: bpy.types.Object, library: bpy.types.Object) -> None:
         rows, count = getattr(settings, name), len(getattr(theirs, name))
         if not 0 < count < len(rows):
             continue
-        _put_linked_first(rows)
+        linked = _put_linked_first(rows)
         if name in _FOUND:
-            _join_namesakes(rows, count)
+            _join_namesakes(rows, linked)
     if _name_at(settings.contacts, settings.active_contact) != chosen:
         settings.active_contact = settings.contacts.find(chosen)
     _let_go(settings, theirs)
@@ -48,14 +48,18 @@ def _name_at(rows: Any, index: int) -> str:
     return str(rows[index].name) if 0 <= index < len(rows) else ""
 
 
-def _put_linked_first(rows: Any) -> None:
-    """Nothing tells which rows are linked, but that Blender refuses to move these."""
+def _put_linked_first(rows: Any) -> int:
+    """How many they are. Nothing tells which rows are linked, but that Blender refuses to move
+    these; one is added for the time, as no row is refused to stay the last."""
+    rows.add()
     place = 0
-    for _ in range(len(rows)):
+    for _ in range(len(rows) - 1):
         try:
             rows.move(place, len(rows) - 1)
         except TypeError:
             place += 1
+    rows.remove(place)
+    return place
 
 
 def _join_namesakes(rows: Any, linked: int) -> None:

@@ -37,7 +37,7 @@ def chosen_armature(context: bpy.types.Context) -> bpy.types.Object | None:
     scene = present(context.scene)
     own = scene_settings(scene)
     chosen: bpy.types.Object | None = own.armature
-    if chosen is not None and chosen.name not in scene.objects:
+    if chosen is not None and scene not in chosen.users_scene:
         chosen = None
     active = present(context.view_layer).objects.active
     if active is None or active.type != "ARMATURE":

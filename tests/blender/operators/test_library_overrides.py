@@ -113,6 +113,9 @@ def test_what_is_analysed_in_the_library_later_leaves_an_overrides_own_analysis(
     assert contacts_of(again) == sorted(own.items())
     assert again.hangtime.stances["ground 2"].up == pytest.approx(0.05)
     assert [row.name for row in again.hangtime.constraints] == ["Theirs", "Mine"]
+    lists = ("hangtime.contacts", "hangtime.stances", "hangtime.constraints")
+    kept = [each for each in again.override_library.properties if each.rna_path in lists]
+    assert [each.rna_path for each in kept if each.operations] == [lists[-1]]  # for a resync
     again.hangtime.active_constraint = 1
     assert bpy.ops.hangtime.remove_constraint() == {"FINISHED"}
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
