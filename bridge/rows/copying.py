@@ -64,8 +64,8 @@ def put_settings(held: HeldSettings, target: Any) -> None:
     that no outcome is forgotten for it."""
     for name, value in held.items():
         if isinstance(value, list):
-            names = ["" if kept["name"] is _UNSET else kept["name"] for kept in value]
-            rows = rows_named(getattr(target, name), names)
+            rows = getattr(target, name)
+            rows = rows_named(rows, [_name(kept, rows, i) for i, kept in enumerate(value)])
             for row, kept in zip(rows, value, strict=True):
                 put_settings(kept, row)
         elif isinstance(value, dict):
@@ -77,6 +77,13 @@ def put_settings(held: HeldSettings, target: Any) -> None:
             target.property_unset(name)
         elif not (target.is_property_set(name) and _plain(target, name) == value):
             setattr(target, name, value)
+
+
+def _name(held: HeldSettings, rows: Any, place: int) -> str:
+    """The name of a row that is held; where rows store none, what is at its place now."""
+    if "name" in held:
+        return "" if held["name"] is _UNSET else str(held["name"])
+    return str(rows[place].name) if place < len(rows) else ""
 
 
 def _plain(group: Any, name: str) -> object:
@@ -144,7 +151,7 @@ def _stored(group: Any, skip: Collection[str]) -> list[tuple[str, object]]:
 
 
 def rows_named(rows: Any, names: Sequence[str]) -> list[Any]:
-    """Makes a list's rows those of these names, in order, where they are not, new ones: these rows.
+    """Makes a list's rows those of these names, in order: these rows, new where names are others.
 
     An override can neither drop nor rename rows of the linked file, which would come back when the
     file is opened: of these the namesakes are taken, wherever they are, and others are let go.
