@@ -14,7 +14,6 @@ from ...solver.arrays import BoolArray, FloatArray
 from ...solver.data.faults import NoControls
 from ...solver.data.recording import PoseTrack
 from ..accessors import current_scene
-from ..armature.channels import proper
 from ..armature.incremental import Incremental, in_slices
 from ..armature.poses import Poses, metres_per_unit, sample
 from .choice import Group, all_responses, felt_controls, used_groups
@@ -24,7 +23,7 @@ from .inverse import Inverse, Inverted
 from .needed import Effects, effects_at
 from .posing import Posing
 from .responses import Freedom, Responses
-from .targets import parents_of, targets_of
+from .targets import move_of_pelvis, moved_bases, parents_of, targets_of
 
 
 @dataclass(frozen=True)
@@ -158,7 +157,8 @@ def control_poses(
     """Controls such that the bodies follow a track. poses: the rig's at the track's frames, as
     `showing` lets it perform them."""
     posing = rig.posing
-    inverse = Inverse(posing, rig.responses, targets_of(rig.armature, poses, track))
+    targets = targets_of(rig.armature, poses, track)
+    inverse = Inverse(posing, rig.responses, targets, rig.carriers)
     index = {float(frame): t for t, frame in enumerate(track.frames)}
 
     def look(frames: FloatArray) -> list[Inverted]:
@@ -204,18 +204,9 @@ def carried_controls(
             return [at(float(frame)) for frame in frames]
 
     def at(frame: float) -> FloatArray:
-        t = index[frame]
         posing.go_to(frame)
         posed = posing.look()
-        goal = posed.bodies[0].copy()
-        turn = wanted.rotations[t, 0] @ proper(posed.bodies[0, :3, :3]).T
-        goal[:3, :3] = turn @ posed.bodies[0, :3, :3]
-        goal[:3, 3] = wanted.heads[t, 0]
-        move = goal @ np.linalg.inv(posed.bodies[0])
-        moved = move @ posed.controls
-        bases = np.linalg.solve(posed.frames, moved)
-        bases[:, :, 3:] = np.linalg.solve(posed.places, moved[:, :, 3:])
-        return np.asarray(bases)
+        return moved_bases(posed, move_of_pelvis(posed, wanted, index[frame]))
 
     parts = yield from in_slices(track.frames, look, showing)
     bases = np.stack([each for part in parts for each in part])

@@ -1,9 +1,14 @@
 """Controls such that bodies are where they should be, frame by frame: Levenberg-Marquardt on what
-the rig does, measured by trying, so that whatever lies between controls and bodies counts."""
+the rig does, measured by trying, so that whatever lies between controls and bodies counts.
+
+Controls may do the same by each other's opposite turns, and a straight limb needs nothing of its
+pole. So what controls are beside the take counts a little (Tikhonov's regularisation, with the take
+as the reference: Engl, Hanke and Neubauer, Regularization of Inverse Problems, 1996, chapter 5).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,8 +19,8 @@ from ..armature.channels import proper
 from .followed import FAINT, Influences
 from .needed import LEVER
 from .posing import Posed, Posing
-from .responses import Freedom, Responses, apart, measured
-from .targets import Targets
+from .responses import Dof, Freedom, Responses, apart, measured
+from .targets import Targets, move_of_pelvis, moved_bases
 
 STEPS = 30
 NEAR = 2e-6  # m, beside LEVER times rad: steps that gain less end a frame, as do
@@ -25,7 +30,7 @@ STILL = 2e-5  # m, beside LEVER times rad, that a body must be to move by in a s
 # is tried anew: each step tells what the rig does as well, in its own direction.
 SLOW, SLOW_STEPS = 0.25, 3
 # Of the squares of a dof's effect; Nielsen, Damping Parameter in Marquardt's Method (1999).
-DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1.0
+DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-4, 1e-5, 1.0
 LESS, MORE = 5.0, 6.0  # by which damping goes down after a gain, and up after none
 LONGEST, MOST = 0.5, 0.1  # rad of one step, and change of size
 # m of error above which a frame is solved from other starts as well: above the first too, where it
@@ -38,6 +43,10 @@ SLIGHT = 0.002
 HARDLY, IDLE_STEPS = 0.03, 2  # share of such an error, and steps that gain less, to end by
 FAR = 0.1  # m of error at the first guess, above which controls are put beside their bodies
 FULL = 0.05  # of a turn, by which a body that follows in full may miss it
+# m of error that a control's turn by 1 rad, or shift by 1 m, beside the take counts: what bodies
+# need of it they get within some hundredths of a mm, and what they do not need is left.
+BESIDE = 0.003
+FINE = 2e-4  # m of error; what bodies gain below, and controls then, counts as beside so much
 SIZES = 0.002  # m of error that a doubled size counts: where a limb is straight it does nothing
 
 
@@ -54,24 +63,35 @@ _SIZE = 6
 _COLUMN = {Freedom.TURN: 0, Freedom.SHIFT: 3, Freedom.SIZE: _SIZE}  # of offsets (C, 7)
 
 
+def _place(dof: Dof) -> tuple[int, int]:
+    """Of a degree of freedom in offsets (C, 7)."""
+    return dof.control, _COLUMN[dof.freedom] + dof.axis
+
+
 @dataclass(frozen=True)
 class _Look:
-    """What controls do at pose bases (C, 4, 4). error: (6 B + C,): heads in m and turns
-    times LEVER that bodies lack, in the armature's axes; then sizes."""
+    """What controls do at pose bases (C, 4, 4). error: (6 B + 7 C,): heads in m and turns
+    times LEVER that bodies lack, in the armature's axes; then what controls lack of the reference,
+    weighted."""
 
     bases: FloatArray
     posed: Posed
     error: FloatArray
 
     @property
-    def size(self) -> float:
-        """Of the error, m."""
+    def cost(self) -> float:
+        """Size of all of the error, m: what is least at the solution."""
         return float(np.linalg.norm(self.error))
+
+    @property
+    def size(self) -> float:
+        """Of what bodies lack, m."""
+        return float(np.linalg.norm(self.error[: 6 * len(self.posed.bodies)]))
 
     @property
     def by_body(self) -> FloatArray:
         """(2, B) m, of the error: by how much heads and turns are off, these times LEVER."""
-        lacks = self.error[: -len(self.bases)].reshape(2, -1, 3)
+        lacks = self.error[: 6 * len(self.posed.bodies)].reshape(2, -1, 3)
         return np.asarray(np.linalg.norm(lacks, axis=2))
 
 
@@ -98,6 +118,15 @@ def _difference(before: FloatArray, after: FloatArray) -> FloatArray:
     turns = np.swapaxes(rotation_matrix(before[:, :3]), 1, 2) @ rotation_matrix(after[:, :3])
     changes[:, :3] = rotation_vector(turns)
     return changes
+
+
+def _differing(animated: FloatArray, bases: FloatArray) -> FloatArray:
+    """Offsets (C, 7) from the animated bases, of which bases (C, 4, 4) differ but by size."""
+    offsets = np.zeros((len(bases), 7))
+    before, after = proper(animated[:, :3, :3]), proper(bases[:, :3, :3])
+    offsets[:, :3] = rotation_vector(np.swapaxes(before, 1, 2) @ after)
+    offsets[:, 3:6] = bases[:, :3, 3] - animated[:, :3, 3]
+    return offsets
 
 
 def _enough(beside: float) -> float:
@@ -128,8 +157,15 @@ def _ranks(responses: Responses) -> list[list[int]]:
 class Inverse:
     """Solves frames one after the other; each begins with what the one before needed."""
 
-    def __init__(self, posing: Posing, responses: Responses, targets: Targets) -> None:
+    def __init__(
+        self,
+        posing: Posing,
+        responses: Responses,
+        targets: Targets,
+        carriers: Collection[str],
+    ) -> None:
         self._posing, self._targets = posing, targets
+        self._carries = np.array([name in carriers for name in posing.controls])
         self._groups = apart(responses)
         self._responses = responses
         self._ranks = _ranks(responses)
@@ -137,21 +173,23 @@ class Inverse:
         self._change = np.zeros_like(self._offsets)  # of the offsets at the last frame
         self._influences = Influences(posing.armature)
         self._acted: BoolArray | None = None
+        self._felt = np.ones(len(posing.controls), dtype=bool)
         self._met: Posed | None = None  # at the last frame that was met
         self._left = 0.0  # m of error, at the last frame
         # Offsets and m of error at each frame, by index; what is seen there would be much more.
         self._needed: dict[int, tuple[FloatArray, float]] = {}
+        self._reference = np.zeros_like(self._offsets)
+        self._weights = np.zeros_like(self._offsets)
+        self._as_taken = False  # whether the bodies but go along with the pelvis at a frame
         self.tries = 0
 
     def solve(self, t: int) -> Inverted:
         """Solve the frame of index t: from what the one before needed, or from that changed once
         more as it was changed there, whichever is nearer, and where both are far off with controls
         beside their bodies as they were there; where that leads nowhere, from others."""
-        self._posing.go_to(float(self._targets.frames[t]))
-        animated = self._posing.bases()
-        self._try_where_switched(animated)
-        ahead = _changed(self._offsets, self._change)
-        start, size = self._nearest(animated, [self._offsets, ahead], t)
+        animated = self._begun(t)
+        starts = [self._offsets, _changed(self._offsets, self._change)]
+        start, size = self._nearest(animated, starts + [self._reference] * self._as_taken, t)
         if size > FAR and self._met is not None:
             every = np.ones(len(self._met.bodies), dtype=bool)
             beside = self._beside(animated, start, t, every, self._met)
@@ -162,7 +200,7 @@ class Inverse:
             if best.size <= enough:
                 break
             other = self._solved(animated, start, t)
-            if other[1].size < best.size:
+            if other[1].cost < best.cost:
                 offsets, best = other
         met = best.size < LOST
         self._change = _difference(self._offsets, offsets) if met else np.zeros_like(offsets)
@@ -171,13 +209,29 @@ class Inverse:
         self._needed[t] = offsets, best.size
         return _inverted(best)
 
+    def _begun(self, t: int) -> FloatArray:
+        """The bases (C, 4, 4) of the take at the frame of index t, which is shown then: the
+        reference, but for the carriers, which go along with the pelvis."""
+        self._posing.go_to(float(self._targets.frames[t]))
+        animated, shown = self._posing.bases(), self._posing.look()
+        felt = self._try_where_switched(animated)
+        move = move_of_pelvis(shown, self._targets, t)
+        self._as_taken = bool(np.linalg.norm(self._lacks(move @ shown.bodies, t)) < SUSPECT)
+        carried = _differing(animated, moved_bases(shown, move))
+        self._reference = np.where((self._carries & felt)[:, None], carried, 0.0)
+        self._weights = np.zeros_like(self._reference)
+        lengths = {Freedom.SHIFT: self._targets.unit[t], Freedom.SIZE: SIZES / BESIDE}
+        for dof in (dof for dof in self._responses.dofs if felt[dof.control]):
+            self._weights[_place(dof)] = BESIDE * lengths.get(dof.freedom, 1.0)
+        return animated
+
     def _nearest(
         self, animated: FloatArray, starts: list[FloatArray], t: int
     ) -> tuple[FloatArray, float]:
         """The one of some first guesses that is off by the least, and by how much (m)."""
-        sizes = [self._look(animated, start, t).size for start in starts]
-        best = int(np.argmin(sizes))
-        return starts[best], sizes[best]
+        looks = [self._look(animated, start, t) for start in starts]
+        best = int(np.argmin([look.cost for look in looks]))
+        return starts[best], looks[best].size
 
     def unmet(self) -> list[int]:
         """Indices of the frames that were left with more than the next one, the last one first."""
@@ -192,13 +246,11 @@ class Inverse:
         after, _ = self._needed[t + 1]
         self._posing.go_to(float(self._targets.frames[t + 1]))
         then = self._look(self._posing.bases(), after, t + 1).posed
-        self._posing.go_to(float(self._targets.frames[t]))
-        animated = self._posing.bases()
-        self._try_where_switched(animated)
+        animated = self._begun(t)
         every = np.ones(len(then.bodies), dtype=bool)
         starts = after, self._beside(animated, after, t, every, then)
         found = [self._solved(animated, start, t) for start in starts]
-        offsets, best = min(found, key=lambda each: each[1].size)
+        offsets, best = min(found, key=lambda each: each[1].cost)
         if best.size >= self._needed[t][1]:
             return None
         self._needed[t] = offsets, best.size
@@ -263,21 +315,19 @@ class Inverse:
         """The dofs of a control."""
         return [d for d, dof in enumerate(self._responses.dofs) if dof.control == control]
 
-    def _try_where_switched(self, animated: FloatArray) -> None:
+    def _try_where_switched(self, animated: FloatArray) -> BoolArray:
         """At the first frame, and where other constraints act than before and so other controls do:
-        try them anew, and leave to the take those that do nothing."""
+        try them anew, and leave to the take those that do nothing. (C,) which do something."""
         acts = self._influences.now() > FAINT
         if self._acted is None or (acts != self._acted).any():
             self._responses = measured(self._posing, animated, self._groups)
             self.tries += len(self._groups)
-            felt = {
-                dof.control
-                for dof, of in zip(self._responses.dofs, self._responses.follow, strict=True)
-                if of.any()
-            }
-            self._offsets[[c for c in range(len(animated)) if c not in felt]] = 0.0
+            felt = np.array([self._moved(c).any() for c in range(len(animated))])
+            self._offsets[~felt] = 0.0
             self._change = np.zeros_like(self._offsets)
+            self._felt = felt
         self._acted = acts
+        return self._felt
 
     def _solved(
         self, animated: FloatArray, offsets: FloatArray, t: int
@@ -286,29 +336,30 @@ class Inverse:
         best = self._look(animated, offsets, t)
         fresh, damping, slow, idle = False, DAMPING, 0, 0
         for _ in range(STEPS):
-            size = best.size
+            size = max(best.size, FINE)
             moved, step, reach = self._stepped(offsets, best, t, damping)
-            if (fresh or size < SLIGHT) and reach < STILL:
+            if (fresh or best.size < SLIGHT) and reach < STILL:
                 break
             after = self._look(animated, moved, t)
             self._responses = self._responses.corrected(best.posed, best.bases, step, after.posed)
             left = after.size
-            gained = size - left
-            if gained > 0.0:
+            gained = (best.cost**2 - after.cost**2) / (2.0 * size)
+            nearer = gained > 0.0
+            if nearer:
                 offsets, best = moved, after
-            done = gained < max(NEAR, LITTLE * size) if gained > 0.0 else damping > MOST_DAMPING
+            done = gained < max(NEAR, LITTLE * size) if nearer else damping > MOST_DAMPING
             slight = best.size < SLIGHT
             idle = idle + 1 if gained < HARDLY * size else 0
             ended = done or left < NEAR
             if (fresh and ended) or (slight and (ended or idle >= IDLE_STEPS)):
                 break
             slow = slow + 1 if left > SLOW * size else 0
-            anew = (slow >= SLOW_STEPS or done) and not slight and (gained > 0.0 or not fresh)
-            damping = max(damping / LESS, LEAST_DAMPING) if gained > 0.0 else MORE * damping
+            anew = (slow >= SLOW_STEPS or done) and not slight and (nearer or not fresh)
+            damping = max(damping / LESS, LEAST_DAMPING) if nearer else MORE * damping
             if anew:
                 slow, self._responses = 0, measured(self._posing, best.bases, self._groups)
                 self.tries += len(self._groups)
-            fresh = anew or (fresh and gained <= 0.0)
+            fresh = anew or (fresh and not nearer)
         return offsets, best
 
     def _look(self, animated: FloatArray, offsets: FloatArray, t: int) -> _Look:
@@ -317,12 +368,14 @@ class Inverse:
             self._posing.pose(index, basis)
         self.tries += 1
         posed = self._posing.look()
-        return _Look(bases, posed, np.append(self._lacks(posed, t), -SIZES * offsets[:, _SIZE]))
+        beside = self._weights * _difference(offsets, self._reference)
+        return _Look(bases, posed, np.append(self._lacks(posed.bodies, t), beside))
 
-    def _lacks(self, posed: Posed, t: int) -> FloatArray:
+    def _lacks(self, bodies: FloatArray, t: int) -> FloatArray:
+        """(6 B,) m, of bodies (B, 4, 4): heads, then turns times LEVER."""
         wanted = self._targets
-        off = wanted.unit[t] * (wanted.heads[t] - posed.bodies[:, :3, 3])
-        now = np.swapaxes(proper(posed.bodies[:, :3, :3]), 1, 2)
+        off = wanted.unit[t] * (wanted.heads[t] - bodies[:, :3, 3])
+        now = np.swapaxes(proper(bodies[:, :3, :3]), 1, 2)
         turned = LEVER * rotation_vector(wanted.rotations[t] @ now)
         return np.concatenate([off.ravel(), turned.ravel()])
 
@@ -336,19 +389,20 @@ class Inverse:
         rows = np.concatenate(
             [unit * shifts.reshape(count, -1), LEVER * turns.reshape(count, -1)], axis=1
         )
-        sized = np.zeros((count, len(offsets)))
+        pull = np.zeros((count, *offsets.shape))
         for d, dof in enumerate(self._responses.dofs):
-            sized[d, dof.control] = SIZES * (dof.freedom is Freedom.SIZE)
-        weighted = np.concatenate([rows, sized], axis=1)
+            pull[d][_place(dof)] = self._weights[_place(dof)]
+        weighted = np.concatenate([rows, pull.reshape(count, -1)], axis=1)
         sizes = np.linalg.norm(weighted, axis=1)
+        every = weighted
         weighted = weighted / np.where(sizes > 0.0, sizes, 1.0)[:, None]
         normal = weighted @ weighted.T + damping * np.eye(count)
         step = np.linalg.solve(normal, weighted @ at.error) / np.where(sizes > 0.0, sizes, np.inf)
         changes = np.zeros_like(offsets)
         for dof, amount in zip(self._responses.dofs, step, strict=True):
-            changes[dof.control, _COLUMN[dof.freedom] + dof.axis] = amount
+            changes[_place(dof)] = amount
         turned = np.linalg.norm(changes[:, :3], axis=1, keepdims=True)
         changes[:, :3] *= np.minimum(1.0, LONGEST / np.maximum(turned, 1e-12))
         changes[:, _SIZE] = np.clip(changes[:, _SIZE], -MOST, MOST)
-        taken = [changes[d.control, _COLUMN[d.freedom] + d.axis] for d in self._responses.dofs]
-        return _changed(offsets, changes), np.array(taken), float(np.abs(step @ rows).max())
+        taken = [changes[_place(dof)] for dof in self._responses.dofs]
+        return _changed(offsets, changes), np.array(taken), float(np.abs(step @ every).max())

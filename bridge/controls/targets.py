@@ -15,6 +15,7 @@ from ..accessors import current_scene
 from ..armature.channels import proper
 from ..armature.poses import Poses, metres_per_unit
 from ..armature.read import rest_bones
+from .posing import Posed
 
 
 @dataclass(frozen=True)
@@ -76,3 +77,20 @@ def parents_of(armature: bpy.types.Object, poses: Poses, bodies: Sequence[str]) 
         line = [names[i] for i in tree.ancestors(names.index(name))[1:]]
         found.append(next((bodies.index(above) for above in line if above in bodies), -1))
     return found
+
+
+def move_of_pelvis(posed: Posed, targets: Targets, t: int) -> FloatArray:
+    """(4, 4), by which the first body, the pelvis, comes from where it is posed to where it should
+    be at the frame of index t."""
+    was, move = posed.bodies[0], np.eye(4)
+    turn = targets.rotations[t, 0] @ proper(was[:3, :3]).T
+    move[:3, :3], move[:3, 3] = turn, targets.heads[t, 0] - turn @ was[:3, 3]
+    return move
+
+
+def moved_bases(posed: Posed, move: FloatArray) -> FloatArray:
+    """Pose bases (C, 4, 4) of controls that a move (4, 4) takes along, if no other moves them."""
+    moved = move @ posed.controls
+    bases = np.linalg.solve(posed.frames, moved)
+    bases[:, :, 3:] = np.linalg.solve(posed.places, moved[:, :, 3:])
+    return np.asarray(bases)
