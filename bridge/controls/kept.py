@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...solver.arrays import FloatArray
+from ...solver.data.reports.keys import BodyMiss
 from ...solver.numerics.rotations import rotation_vector
 from ..armature.channels import proper
 from ..armature.poses import Poses
@@ -14,22 +15,7 @@ from .targets import Targets
 
 FAR_MM, TURNED_DEG = 1.0, 0.2  # by which a body may miss; beyond, it is told as a miss
 WORST = 3  # bones that are told
-
-
-@dataclass(frozen=True)
-class BodyMiss:
-    """What a bone misses most, in mm and degrees, and at which frames."""
-
-    bone: str
-    mm: float
-    far_frame: float
-    degrees: float
-    turned_frame: float
-
-    @property
-    def share(self) -> float:
-        """Of what may be missed, by place or by turn."""
-        return max(self.mm / FAR_MM, self.degrees / TURNED_DEG)
+LOST_MM, LOST_DEG = 10.0, 3.0  # by which a body is off for everybody to see
 
 
 @dataclass(frozen=True)
@@ -53,6 +39,11 @@ class KeptByControls:
         """Whether all is as near as is promised."""
         return self.mm <= FAR_MM and self.degrees <= TURNED_DEG
 
+    @property
+    def lost(self) -> tuple[BodyMiss, ...]:
+        """Of the worst, those that anybody sees."""
+        return tuple(m for m in self.worst if m.mm > LOST_MM or m.degrees > LOST_DEG)
+
 
 def kept_by(shown: Poses, wanted: Targets, controls: int) -> KeptByControls:
     """What bodies miss at the targets' frames. shown: the poses there. controls: with keys."""
@@ -66,7 +57,7 @@ def kept_by(shown: Poses, wanted: Targets, controls: int) -> KeptByControls:
     ]
     far = max(missed, key=lambda miss: miss.mm)
     turned = max(missed, key=lambda miss: miss.degrees)
-    worst = sorted(missed, key=lambda miss: miss.share, reverse=True)[:WORST]
+    worst = sorted(missed, key=_share, reverse=True)[:WORST]
     return KeptByControls(
         far.mm,
         far.bone,
@@ -77,6 +68,11 @@ def kept_by(shown: Poses, wanted: Targets, controls: int) -> KeptByControls:
         controls,
         tuple(worst),
     )
+
+
+def _share(miss: BodyMiss) -> float:
+    """Of what may be missed, by place or by turn."""
+    return max(miss.mm / FAR_MM, miss.degrees / TURNED_DEG)
 
 
 def _missed(bone: str, frames: FloatArray, off: FloatArray, turned: FloatArray) -> BodyMiss:

@@ -205,6 +205,8 @@ class Outputs:
         from ...bridge.takes.span import WrittenTake
 
         made = self.result.report(self.clip.origin, self.stages.done)
+        if written is not None and written.controls is not None:
+            made = replace(made, missed_bodies=written.controls.lost)
         if not isinstance(written, WrittenTake):
             return made
         return replace(made, blends=written.blends, slide_on_way_back_m=written.slide)

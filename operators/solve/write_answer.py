@@ -19,6 +19,7 @@ from ...bridge.constraints.status import write_status
 from ...bridge.controls.aimed import aimed_in, without
 from ...bridge.controls.driven import is_driven
 from ...bridge.controls.held import held_bones
+from ...bridge.controls.kept import KeptByControls
 from ...bridge.files.reproportioned import build_reproportioned, in_new_axes
 from ...bridge.loops.write_loop import (
     Loop,
@@ -55,7 +56,7 @@ from ...solver.data.faults import ChangedMeanwhile, Fault, RateChanged
 from ...solver.data.recording import PoseTrack, same_motion
 from ...solver.data.solver_options import Method
 from ...solver.worker.protocol import Adapted
-from ..words.headline import blend_lines, missed_line, slide_lines
+from ..words.headline import blend_lines, missed_body_lines, missed_line, slide_lines
 from ..words.report_text import as_text
 from ..words.summary_text import summary
 from ..words.take_text import (
@@ -132,6 +133,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         keep(action, answer.traces, stood)
         told = [*take_lines(made), *_layers_lines(armature, action)]
         _note(armature, armature, action, answer, told)
+        _warn_of_controls(armature, action, made.controls)
         if loop.travels:
             complete(_tell_missed(armature, armature, action, answer))
         mark_contacts(armature, action, answer, options)
@@ -157,6 +159,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         told = [*told, *_layers_lines(armature, action)]
     _note(armature, armature, action, answer, told)
     if written is not None:
+        _warn_of_controls(armature, action, written.controls)
         _warn(armature, action, [*blend_lines(written.blends), *slide_lines(written.slide)])
     times = answer.report.times
     time = written.time if written is not None else TakeTime.of(times, 1.0)
@@ -263,6 +266,14 @@ def _tell_polish(
 ) -> None:
     """What became of hand polish: in the sidebar, the report, and among the warnings."""
     _warn(armature, action, pin_lines(moved), polish_lines(renewal.put))
+
+
+def _warn_of_controls(
+    armature: bpy.types.Object, action: bpy.types.Action, kept: KeptByControls | None
+) -> None:
+    """Warn of bones that controls, if there are any, leave far from the solution."""
+    if kept is not None:
+        _warn(armature, action, missed_body_lines(kept.lost))
 
 
 def _warn(

@@ -8,7 +8,7 @@ from ...solver.data.faults import NoFit, NoSolution
 from ...solver.data.reports.certificate import CertificateItem, CertificateLine
 from ...solver.data.reports.constraints import AcceptedReport, ConstraintReport, FitNeeds
 from ...solver.data.reports.jumps import PhaseReport
-from ...solver.data.reports.keys import BlendReport, MissedContact
+from ...solver.data.reports.keys import BlendReport, BodyMiss, MissedContact
 from ...solver.data.reports.report import FitQuality, Report
 from ...solver.data.row_kinds import RowKind
 from ...solver.data.status import Durations, Status
@@ -69,7 +69,8 @@ def headline(report: Report) -> list[str]:
         return [sentence(NoSolution(report.status, fit_off_cm=next(fit, 0.0)))]
     accepted = accepted_lines(report.needs)
     told = [nearness(report.fit_to_recording), *accepted, *lifted_lines(report)]
-    told += given_up_lines(report) + blend_lines(report.blends) + turned_lines(report)
+    told += given_up_lines(report) + missed_body_lines(report.missed_bodies)
+    told += blend_lines(report.blends) + turned_lines(report)
     told += slide_lines(report.slide_on_way_back_m)
     told += [AS_RECORDED[report.durations]] if report.durations in AS_RECORDED else []
     told += other_gravity_lines(report)
@@ -207,6 +208,16 @@ def given_up_lines(report: Report) -> list[str]:
     ]
     more = len(ranked) - len(told)
     return [*told, f"and {more} more, which the report lists"] if more else told
+
+
+def missed_body_lines(missed: Sequence[BodyMiss]) -> list[str]:
+    """The bones that controls leave elsewhere than solved, if there are any: a line."""
+    bones = ", ".join(
+        f"{each.bone} is up to {each.mm:.0f} mm (frame {each.far_frame:g}) and "
+        f"{each.degrees:.0f}° (frame {each.turned_frame:g}) off"
+        for each in missed
+    )
+    return [f"The rig's controls do not reach what was solved: {bones}"] if bones else []
 
 
 def blend_lines(blends: Sequence[BlendReport]) -> list[str]:

@@ -41,6 +41,17 @@ class MissedContact:
 
 
 @dataclass(frozen=True)
+class BodyMiss:
+    """What a bone that controls pose misses most, in mm and degrees, and at which frames."""
+
+    bone: str
+    mm: float
+    far_frame: float
+    degrees: float
+    turned_frame: float
+
+
+@dataclass(frozen=True)
 class BlendReport:
     """A blend between the take and the adapted frames: how it moves the hips.
 

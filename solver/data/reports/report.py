@@ -27,7 +27,7 @@ from .constraints import (
 from .dynamics import DenseResiduals, ForcesReport, TorquesReport, TorqueUse
 from .joints import FastJoint, JointChange, RecordedRange
 from .jumps import JumpReport, LiftedFlight, PhaseReport, TimeMap
-from .keys import BlendReport, KeysReport, MissedContact
+from .keys import BlendReport, BodyMiss, KeysReport, MissedContact
 from .loop import LoopReport
 from .omission import OMIT_NONE
 from .recording import FigureSummary, RecordingSummary
@@ -126,6 +126,7 @@ class Report:
     unseen_support: where something unseen carries the body. let_go: contacts that the fit found
     no way to hold. accepted_contacts: those that it holds near enough to their places.
     missed_contacts: those that the written keys do not show where they were solved to be.
+    missed_bodies: bones that the written keys of controls leave elsewhere than solved.
     blends: how the take goes over into the adapted frames and out of them, where it does.
     slide_on_way_back_m: by how much standing feet slide as the take goes back to where it was.
     lifted_flights: where nothing touches for longer as contacts were lifted. fast_joint: one that
@@ -167,6 +168,7 @@ class Report:
     let_go: tuple[LetGoReport, ...] = ()
     accepted_contacts: tuple[AcceptedReport, ...] = ()
     missed_contacts: tuple[MissedContact, ...] = ()
+    missed_bodies: tuple[BodyMiss, ...] = ()
     blends: tuple[BlendReport, ...] = ()
     slide_on_way_back_m: float = 0.0
     lifted_flights: tuple[LiftedFlight, ...] = ()

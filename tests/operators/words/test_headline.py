@@ -7,7 +7,7 @@ from hangtime.operators.words.headline import MOST_GIVEN_UP, headline
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.reports.constraints import ConstraintReport
 from hangtime.solver.data.reports.jumps import LiftedFlight
-from hangtime.solver.data.reports.keys import BlendReport
+from hangtime.solver.data.reports.keys import BlendReport, BodyMiss
 from hangtime.solver.data.reports.loop import LoopReport
 from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.data.row_kinds import RowKind
@@ -113,3 +113,11 @@ def test_a_loop_that_goes_elsewhere_than_the_recorded_cycle_is_told() -> None:
 
 def test_where_nothing_gave_way_nothing_is_said_of_it() -> None:
     assert not any("gave way" in line or "beside" in line for line in told())
+
+
+def test_bones_that_controls_do_not_bring_where_they_should_be_are_told() -> None:
+    problem = MotionProblem()
+    made = report(adapt(fitted_hop(), problem), problem, Origin("hop"))
+    missed = BodyMiss("DEF-hand.L", 405.7, 298.0, 111.4, 297.0)
+    (told,) = set(headline(replace(made, missed_bodies=(missed,)))) - set(headline(made))
+    assert told.endswith("DEF-hand.L is up to 406 mm (frame 298) and 111° (frame 297) off")
