@@ -45,7 +45,7 @@ FAR = 0.1  # m of error at the first guess, above which controls are put beside 
 FULL = 0.05  # of a turn, by which a body that follows in full may miss it
 # m of error that a control's turn by 1 rad, or shift by 1 m, beside the take counts: what bodies
 # need of it they get within some hundredths of a mm, and what they do not need is left.
-BESIDE = 0.003
+BESIDE = 0.002
 FINE = 2e-4  # m of error; what bodies gain below, and controls then, counts as beside so much
 SIZES = 0.002  # m of error that a doubled size counts: where a limb is straight it does nothing
 

@@ -167,6 +167,20 @@ def test_a_rig_made_by_hand_with_feet_and_poles_is_posed_through_these() -> None
     assert np.degrees(posed.turned.max()) < 0.05
 
 
+def test_a_figure_that_moves_as_one_takes_its_controls_along_and_turns_none() -> None:
+    """Bodies say nothing of how far a pole is away: it stays so as in the take."""
+    rig = ik_rig()
+    for frame in (1, 4):
+        rig.pose.bones["hips"].location.y = -0.05 * frame
+        rig.pose.bones["hips"].keyframe_insert("location", frame=frame)
+    posed = inverted(rig, moved_take(rig, 4))
+    for name in ("knee_pole.L", "knee_pole.R", "stand.L"):
+        shifts = np.linalg.norm(posed.bases[name][:, :3, 3], axis=1)
+        np.testing.assert_allclose(shifts, HIGHER, atol=1e-5)
+    for basis in posed.bases.values():
+        np.testing.assert_allclose(basis[:, :3, :3], [np.eye(3)] * 4, atol=1e-5)
+
+
 @pytest.mark.parametrize("turned", [False, True])
 def test_a_pole_gets_keys_of_its_turn_only_where_the_take_has_some(turned: bool) -> None:
     rig = ik_rig()
