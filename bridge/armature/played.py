@@ -113,12 +113,15 @@ def adopt_strip(owner: bpy.types.Object, action: bpy.types.Action) -> None:
 
 @contextmanager
 def playing_strip(owner: bpy.types.Object, strip: bpy.types.NlaStrip) -> Iterator[None]:
-    """Context in which of the assigned action and the takes' strips only this one is seen."""
+    """Context in which of the assigned action, the takes' strips and what lies above only this one
+    is seen."""
     data = owner.animation_data
     assert data is not None
     assigned, slot = assigned_action(owner), fcurves.slot_identifier(owner)
-    tracks = [(track, track.mute) for track, _ in take_strips(owner)]
-    own = next(track for track in data.nla_tracks if strip in list(track.strips))
+    every = list(data.nla_tracks)
+    own = next(track for track in every if strip in list(track.strips))
+    above, takes = every[every.index(own) + 1 :], [track for track, _ in take_strips(owner)]
+    tracks = [(track, track.mute) for track in every if track in above or track in takes]
     fcurves.assign(owner, None)
     try:
         for track, _ in tracks:

@@ -34,7 +34,6 @@ def write_surface_status(
         said = [remark for name, remark in remarks.items() if name in called]
         told = ". ".join([each for each in (status, *said[:1]) if each])
         row.met, row.status = (met.name, told) if row.used else (Met.UNKNOWN.name, "")
-        row.name = row.called
 
 
 def _deepest(report: Report, names: set[str]) -> ConstraintReport | None:

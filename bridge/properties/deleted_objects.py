@@ -25,6 +25,8 @@ def leave_out_of_files(undo: ExitStack) -> None:
         released[:] = _to_deleted()
         for group, name, _ in released:
             setattr(group, name, None)
+            if name == "maker":
+                group.owned = True  # results of earlier versions do not tell
 
     @persistent  # type: ignore[untyped-decorator]
     def restore(*_of_handlers: object) -> None:
@@ -42,7 +44,8 @@ def _to_deleted() -> list[_Pointer]:
     """The pointers to objects that have no other user."""
     ours = [each for each in _pointers() if each[2] is not None]
     counts = Counter(thing for *_, thing in ours)
-    return [each for each in ours if _is_deleted(each[2]) and each[2].users == counts[each[2]]]
+    alone = [each for each in ours if each[2].users == counts[each[2]]]
+    return [each for each in alone if _is_deleted(each[2])]
 
 
 def _is_deleted(thing: bpy.types.Object) -> bool:

@@ -64,9 +64,7 @@ def put_settings(held: HeldSettings, target: Any) -> None:
     that no outcome is forgotten for it."""
     for name, value in held.items():
         if isinstance(value, list):
-            rows = getattr(target, name)
-            rows = rows_named(rows, [_name(kept, rows, i) for i, kept in enumerate(value)])
-            for row, kept in zip(rows, value, strict=True):
+            for row, kept in zip(_rows_for(value, target, name), value, strict=True):
                 put_settings(kept, row)
         elif isinstance(value, dict):
             put_settings(value, getattr(target, name))
@@ -79,11 +77,18 @@ def put_settings(held: HeldSettings, target: Any) -> None:
             setattr(target, name, value)
 
 
-def _name(held: HeldSettings, rows: Any, place: int) -> str:
-    """The name of a row that is held; where rows store none, what is at its place now."""
-    if "name" in held:
-        return "" if held["name"] is _UNSET else str(held["name"])
-    return str(rows[place].name) if place < len(rows) else ""
+def _rows_for(held: list[HeldSettings], target: Any, name: str) -> list[Any]:
+    """A group's rows to put these into: by their names, or by place where rows store none."""
+    rows, kind = getattr(target, name), target.bl_rna.properties[name].fixed_type
+    row_class = bpy.types.PropertyGroup.bl_rna_get_subclass_py(kind.identifier)
+    if "name" not in getattr(row_class, "COMPUTED", ()):
+        named = (row["name"] for row in held)
+        return rows_named(rows, ["" if each is _UNSET else str(each) for each in named])
+    if len(rows) != len(held):
+        rows.clear()  # but for linked ones
+    while len(rows) < len(held):
+        rows.add()
+    return list(rows)[: len(held)]
 
 
 def _plain(group: Any, name: str) -> object:

@@ -16,16 +16,20 @@ def play_longer(
     """Where a scene plays to its end what an armature's result was made from, it plays the result
     to its own; and with it the armature's other scenes that have ended where it did."""
     kept, (before, last) = scene_settings(scene), _ends(armature, result)
-    alike = [each for each in armature.users_scene if each.frame_end == scene.frame_end]
+    others = [each for each in armature.users_scene if each != scene]
+    alike = [each for each in others if each.frame_end == scene.frame_end]
     if scene.frame_end != kept.lengthened_to:  # the artist's own, from which all counts anew
         kept.own_end = kept.lengthened_to = scene.frame_end
         for _, earlier in _results(scene):
             action_settings(earlier).lengthens = False
     action_settings(result).lengthens = floor(before) <= scene.frame_end
     play_to_end(scene, before, last)
-    for each in {scene, *alike}:
-        its, each.frame_end = scene_settings(each), scene.frame_end
-        its.own_end, its.lengthened_to = kept.own_end, scene.frame_end
+    kept.lengthened_to = scene.frame_end
+    for each in alike:
+        its = scene_settings(each)
+        if each.frame_end != its.lengthened_to:
+            its.own_end = each.frame_end
+        each.frame_end = its.lengthened_to = scene.frame_end
 
 
 def play_what_is_left(armature: bpy.types.Object) -> None:

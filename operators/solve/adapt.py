@@ -206,6 +206,8 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     skin = (yield from read_bound(armature, recording.frames)).skin
     problem = problem_of(settings, recording, scene.objects, skin=skin)
     require_unaimed(problem.requests, aimed, recording.bones)
+    for row in settings.surfaces:
+        row.name = row.called  # by which it is told if its object goes
     options, looped = result_options(settings), loop_options(settings)
     apart = looped is not None or problem.requests.body.limbs
     if not apart:  # those are actions of their own

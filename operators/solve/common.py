@@ -37,13 +37,18 @@ def chosen_armature(context: bpy.types.Context) -> bpy.types.Object | None:
     scene = present(context.scene)
     own = scene_settings(scene)
     chosen: bpy.types.Object | None = own.armature
-    if chosen is not None and scene not in chosen.users_scene:
+    if chosen is not None and not _is_in(chosen, scene):
         chosen = None
     active = present(context.view_layer).objects.active
     if active is None or active.type != "ARMATURE":
         return chosen
     stays = chosen is not None and (own.pinned or active == _beside(chosen))
     return chosen if stays else active
+
+
+def _is_in(thing: bpy.types.Object, scene: bpy.types.Scene) -> bool:
+    """By its name first: to look through all scenes takes long, and every panel asks."""
+    return scene.objects.get(thing.name) == thing or scene in thing.users_scene
 
 
 def _beside(armature: bpy.types.Object) -> bpy.types.Object | None:

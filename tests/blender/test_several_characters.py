@@ -9,7 +9,7 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import current_action
-from hangtime.bridge.takes.takes import derive, start_from_result, takes_of
+from hangtime.bridge.takes.takes import derive, keep_edit, start_from_result, takes_of
 from hangtime.tests.blender.helpers import rigs
 
 pytestmark = pytest.mark.usefixtures("_enabled")
@@ -84,3 +84,29 @@ def test_a_deleted_character_is_left_out_of_the_file_and_comes_back_by_undo(
     bpy.ops.wm.open_mainfile(filepath=path)
     assert name not in bpy.data.objects
     assert "Result" in bpy.data.actions
+
+
+def test_a_deleted_characters_results_of_earlier_versions_are_not_another_ones_either(
+    armature: bpy.types.Object, tmp_path: Path
+) -> None:
+    other, recording = copied(armature).name, current_action(armature).name
+    result_for(armature).hangtime.property_unset("owned")
+    bpy.context.collection.objects.unlink(armature)
+    path = str(tmp_path / "deleted.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    assert "Result" in bpy.data.actions
+    assert actions_of(bpy.data.objects[other]) == [recording]
+
+
+def test_an_edit_with_bones_is_kept_without_a_word(
+    armature: bpy.types.Object, capfd: pytest.CaptureFixture[str]
+) -> None:
+    result, row = result_for(armature), armature.hangtime.constraints.add()
+    for bones in (["shin", "foot"], ["thigh"], []):
+        row.bones.clear()
+        for bone in bones:
+            row.bones.add().name = bone
+        keep_edit(armature)
+        assert [each.called for each in result.hangtime.edit.constraints[0].bones] == bones
+    assert "Traceback" not in "".join(capfd.readouterr())

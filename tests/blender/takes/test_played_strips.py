@@ -23,6 +23,7 @@ from hangtime.bridge.takes.takes import look_again, note_made
 from hangtime.bridge.takes.write_result import combine, lay_in_slot, write_adapted_incrementally
 from hangtime.solver.data.faults import UnreadStrips
 from hangtime.solver.data.recording import PoseTrack
+from hangtime.solver.data.recording import digest as digest_of
 from hangtime.solver.data.reports.jumps import TimeMap
 from hangtime.tests.blender.helpers import rigs
 
@@ -126,9 +127,10 @@ def test_what_an_artists_strip_adds_to_the_take_it_adds_to_the_result(
     assert np.ptp(adds) > 0.0
     adapt(armature, 50.0, 60.0, written_as=written_as)
     assert layers_above(armature, take) == ["Nod"]
-    result = heights(armature, frames)
+    result, recorded = heights(armature, frames), read_recorded(armature, 50.0, 60.0)
     layer.mute = False
     np.testing.assert_allclose(heights(armature, frames) - result, adds, atol=1e-5)
+    assert digest_of(read_recorded(armature, 50.0, 60.0)) == digest_of(recorded)
 
 
 def test_a_strip_that_plays_a_part_has_the_part_alone() -> None:

@@ -132,3 +132,18 @@ def test_scenes_that_share_a_character_and_end_alike_go_along() -> None:
     assert [each.frame_end for each in (bpy.context.scene, alike, other)] == [60, 60, 40]
     discard("A", 60)
     assert [each.frame_end for each in (bpy.context.scene, alike, other)] == [END, END, 40]
+
+
+@pytest.mark.usefixtures("_figures")
+def test_a_scene_that_goes_along_keeps_the_end_that_it_had() -> None:
+    bpy.ops.scene.new(type="LINK_COPY")
+    other = bpy.context.scene
+    other.frame_end = 60  # the artist's
+    bpy.ops.scene.new(type="LINK_COPY")
+    bpy.context.scene.frame_end = END
+    make("A", 60)
+    make("A", 70)
+    assert [each.frame_end for each in (bpy.context.scene, other)] == [70, 70]
+    for last in (60, 70):
+        discard("A", last)
+    assert [each.frame_end for each in (bpy.context.scene, other)] == [END, 60]
