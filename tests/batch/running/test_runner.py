@@ -46,6 +46,7 @@ def test_every_cell_gets_a_result_and_the_same_command_solves_none_again(tmp_pat
     assert not [p.name for p in (folder / CELLS).iterdir() if p.name.startswith(".")]
 
 
+@pytest.mark.slow
 def test_a_cell_whose_output_is_emptied_is_told_and_solved_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -81,6 +82,7 @@ def test_the_end_tells_how_many_the_certificate_has_nothing_new_against(
     assert worse == {"a.bvh": "1.0", "b.bvh": "0.0", "c.bvh": ""}
 
 
+@pytest.mark.slow
 def test_cells_of_clips_with_the_same_name_are_told_apart_and_alike_ones_together(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -146,6 +148,7 @@ def test_a_cell_that_takes_too_long_is_ended_and_told_and_the_others_go_on(tmp_p
     assert len(lines(folder, "begin")) == 3  # each once
 
 
+@pytest.mark.slow
 def test_a_cell_that_would_not_fit_into_memory_waits_for_the_other(tmp_path: Path) -> None:
     planned(tmp_path, {f"{i}.bvh": "sleep 0.05" for i in range(4)})
     folder = tmp_path / "out"
@@ -249,6 +252,7 @@ def test_a_batch_that_is_killed_twenty_times_loses_nothing(tmp_path: Path, seed:
     assert_nothing_lost_or_solved_twice(folder, killed, 2)
 
 
+@pytest.mark.slow
 def test_results_that_vanish_are_told(tmp_path: Path) -> None:
     """Such as on a shared folder that is gone."""
     planned(tmp_path, {"a.bvh": "sleep 0.5"})

@@ -70,6 +70,7 @@ def off(armature: bpy.types.Object, track: PoseTrack) -> tuple[float, float]:
     return 1000.0 * float(apart.max()), float(np.degrees(2.0 * np.arcsin(chords.max())))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mode", MODES)
 def test_blender_shows_the_error_that_is_reported_in_every_rotation_mode(mode: str) -> None:
     armature, track, report = written(REDUCED, mode)

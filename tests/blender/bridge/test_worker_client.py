@@ -143,6 +143,7 @@ def test_a_fault_is_an_answer_and_the_worker_lives_on(worker: Worker, jump: Reco
     assert None not in numbers
 
 
+@pytest.mark.slow
 def test_the_stated_height_leaves_places_in_the_recordings_lengths(
     worker: Worker, jump: Recording
 ) -> None:
@@ -354,6 +355,7 @@ def on_its_way(request: Request) -> Followed:
     return Followed(request.id, unread, DragStatus.CONVERGING, unread)
 
 
+@pytest.mark.slow
 def test_a_request_about_another_fit_ends_what_is_prepared(worker: Worker, jump: Recording) -> None:
     prepared = worker.prepare(jump, MotionProblem(frames=SPAN))
     other = MotionProblem(frames=(SPAN[0], SPAN[1] - 20.0))
@@ -361,6 +363,7 @@ def test_a_request_about_another_fit_ends_what_is_prepared(worker: Worker, jump:
     assert isinstance(prepared.wait(), Cancelled)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [RequestKind.EXAMINE, RequestKind.ANALYSE])
 def test_what_needs_no_fit_does_not_wait_for_one(
     worker: Worker, jump: Recording, kind: RequestKind
@@ -387,6 +390,7 @@ def test_what_cannot_be_followed_is_said_and_the_drag_goes_on(
     assert next(followed(stream)).summary.moved_cm == pytest.approx(1.0, abs=0.1)
 
 
+@pytest.mark.slow
 def test_a_worker_that_is_killed_answers_so_and_another_takes_over(
     worker: Worker, jump: Recording
 ) -> None:
@@ -420,6 +424,7 @@ def test_one_request_at_a_time(worker: Worker, jump: Recording) -> None:
         worker.ask(RequestKind.ANALYSE, jump, UP)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks processes up in /proc")
 def test_closing_ends_the_process_whatever_it_does(worker: Worker, jump: Recording) -> None:
     job = worker.ask(RequestKind.ADAPT, jump, UP)
@@ -433,6 +438,7 @@ def test_closing_ends_the_process_whatever_it_does(worker: Worker, jump: Recordi
     assert gone(pid)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks processes up in /proc")
 def test_a_pipe_is_kept_open_while_something_is_being_sent_into_it(
     worker: Worker, jump: Recording, monkeypatch: pytest.MonkeyPatch
@@ -461,6 +467,7 @@ def test_a_pipe_is_kept_open_while_something_is_being_sent_into_it(
     assert open_to_the_end == [True]
 
 
+@pytest.mark.slow
 def test_the_worker_ends_with_its_parent(jump: Recording) -> None:
     assert len(jump.frames) > 0
     assert gone(int(output_of(ORPHAN, JUMP)))

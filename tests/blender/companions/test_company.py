@@ -230,6 +230,7 @@ def test_it_is_told_in_words_and_in_the_report() -> None:
     assert not [line for line in take_lines(plain) if "goes along" in line or "Kept" in line]
 
 
+@pytest.mark.slow
 def test_a_file_for_an_engine_has_the_root_under_the_hips_and_helpers_on_the_body(
     tmp_path: Path,
 ) -> None:

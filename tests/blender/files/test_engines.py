@@ -99,6 +99,7 @@ def test_an_engine_finds_no_transformation_on_the_armature(engine: Engine, tmp_p
     assert armature.name == "Mixamo"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", [FileFormat.FBX, FileFormat.GLTF])
 def test_several_takes_go_into_one_file_by_their_names(form: FileFormat, tmp_path: Path) -> None:
     armature, path = jumping("cmu"), tmp_path / f"jumps{ENDINGS[form]}"

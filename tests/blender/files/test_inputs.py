@@ -33,6 +33,7 @@ def imported(importer: str, path: Path) -> bpy.types.Object:
     return next(o for o in bpy.data.objects if o.type == "ARMATURE")
 
 
+@pytest.mark.slow
 def test_each_importer_of_fbx_gives_the_same_motion_after_the_same_bind_frame() -> None:
     found = []
     for importer in ("import_scene.fbx", *(("wm.fbx_import",) if NATIVE else ())):
@@ -45,6 +46,7 @@ def test_each_importer_of_fbx_gives_the_same_motion_after_the_same_bind_frame() 
     np.testing.assert_allclose(found[-1], found[0], atol=1e-5 * size)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("_enabled")
 def test_an_armature_from_a_usd_file_is_analysed(tmp_path: Path) -> None:
     """Its parent carries the scale, and nothing tells Blender its frame rate."""

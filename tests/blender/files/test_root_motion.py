@@ -40,6 +40,7 @@ def exported(
     return shown, reimport(path, FRAMES, begins=FRAMES[0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", ["cmu", "unreal"])
 def test_a_root_bone_carries_the_same_motion(key: str, tmp_path: Path) -> None:
     """One that is there, and one that is added."""

@@ -81,6 +81,7 @@ def test_what_cannot_repeat_is_said(run: bpy.types.Object) -> None:
     assert (run.hangtime.first_frame, run.hangtime.last_frame) == (ASKED[0], ASKED[0] + 45)
 
 
+@pytest.mark.slow
 def test_reduced_keys_and_a_missing_root_are_said_before_the_solve(run: bpy.types.Object) -> None:
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
     run.hangtime.result_keys.on = "REDUCED"

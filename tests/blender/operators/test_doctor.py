@@ -56,6 +56,7 @@ def test_what_is_said_of_the_file_is_not_guessed(capsys) -> None:
     assert capsys.readouterr().out == "Nothing is wrong with the recording.\n"
 
 
+@pytest.mark.slow
 def test_more_frames_than_the_file_announces_are_told(tmp_path: Path, capsys) -> None:
     text, clip = mocap_path(CLIP).read_text(), tmp_path / "longer.bvh"
     clip.write_text(re.sub(r"Frames:\s*\d+", "Frames: 300", text))
@@ -81,6 +82,7 @@ def test_a_recipe_is_not_overwritten(tmp_path: Path, capsys) -> None:
     assert "mine.toml" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("read_as", "up"), [("Y", UpAxis.Z), ("Z", UpAxis.Y)])
 def test_a_repaired_clip_is_read_upright_in_its_true_size_and_time(read_as, up) -> None:
     """2.13 times as large, 0.3 m up, 1.25 times too slow; one lies on its back."""
@@ -95,6 +97,7 @@ def test_a_repaired_clip_is_read_upright_in_its_true_size_and_time(read_as, up) 
     )
 
 
+@pytest.mark.slow
 def test_missing_frames_are_put_in_as_without_blender(tmp_path: Path, capsys) -> None:
     clip, recipe = without_frames(mocap_path(CLIP), 150, 4, tmp_path), tmp_path / "mend.toml"
     assert main(["doctor", str(clip), *FRAMES, "--write-recipe", str(recipe)]) == 0
@@ -110,6 +113,7 @@ def test_missing_frames_are_put_in_as_without_blender(tmp_path: Path, capsys) ->
         assert np.abs(mended.window(*problem.frames).heads - wanted.heads).max() < 2e-3
 
 
+@pytest.mark.slow
 def test_frames_that_are_too_many_are_taken_out_as_without_blender(tmp_path: Path, capsys) -> None:
     """A jump that is held in the air for 0.3 s: it was told as missing frames and a wrong clock."""
     clip, recipe = with_frames_repeated(mocap_path(CLIP), 195, 36, tmp_path), tmp_path / "m.toml"
@@ -142,6 +146,7 @@ def test_a_recording_of_which_nothing_is_left_is_refused_here_and_without_blende
     assert told.value == plain.value
 
 
+@pytest.mark.slow
 def test_frames_at_both_ends_are_left_out_as_without_blender(tmp_path: Path) -> None:
     """Those that hold the rest pose are among the first."""
     repairs, problem = Repairs(trim=5, trim_end=30), MotionProblem()
@@ -157,6 +162,7 @@ def test_frames_at_both_ends_are_left_out_as_without_blender(tmp_path: Path) -> 
             assert ends == (6.0, count - 30.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scale", [0.01, 1000.0])
 def test_a_scale_that_makes_nobody_is_refused_here_and_without_blender(scale) -> None:
     repairs, problem = Repairs(scale=scale), MotionProblem(frames=(100.0, 290.0))

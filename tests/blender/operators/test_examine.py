@@ -148,6 +148,7 @@ def test_a_remedy_is_left_out_again(examined) -> None:
     assert applied(examined.hangtime) == Repairs()
 
 
+@pytest.mark.slow
 def test_ground_of_the_panel_world_is_the_floor(jump) -> None:
     jump.location.z = -RAISED
     bpy.ops.hangtime.examine()
@@ -287,6 +288,7 @@ def test_repairs_that_cannot_be_read_stop_the_analysis(damaged, stored) -> None:
         bpy.ops.hangtime.analyze()
 
 
+@pytest.mark.slow
 def test_repairs_that_cannot_be_read_are_told_until_it_is_examined_anew(examined, capfd) -> None:
     examined.hangtime.repairs = "3"
     assert bpy.ops.hangtime.examine() == {"FINISHED"}
@@ -337,6 +339,7 @@ def test_one_remedy_takes_the_place_of_the_other(examined) -> None:
     assert now.scale == pytest.approx(SLOWED**-2, rel=0.05)
 
 
+@pytest.mark.slow
 def test_what_is_repaired_is_found_again_as_such(examined) -> None:
     found = kinds(examined)
     bpy.ops.hangtime.repair_all()
@@ -427,6 +430,7 @@ def test_legs_that_were_exchanged_in_a_file_are_exchanged_back(tmp_path) -> None
     assert is_applied(hop.hangtime, hop.hangtime.findings["exchanged legs"])
 
 
+@pytest.mark.slow
 def test_frames_at_rest_are_left_out_by_the_range(tmp_path) -> None:
     rigs.reset()
     jump = import_clip(begun_at_rest(mocap_path(JUMP), tmp_path)).armature
@@ -440,6 +444,7 @@ def test_frames_at_rest_are_left_out_by_the_range(tmp_path) -> None:
     assert not jump.hangtime.use_range
 
 
+@pytest.mark.slow
 def test_frames_at_rest_at_both_ends_are_left_out_together(tmp_path) -> None:
     rigs.reset()
     jump = import_clip(begun_at_rest(mocap_path(JUMP), tmp_path, ended=True)).armature
@@ -464,6 +469,7 @@ def joined(jump: bpy.types.Object) -> bpy.types.Object:
     return jump
 
 
+@pytest.mark.slow
 def test_of_a_clip_that_was_joined_the_longest_part_is_kept(joined) -> None:
     settings = joined.hangtime
     settings.use_range = False
@@ -476,6 +482,7 @@ def test_of_a_clip_that_was_joined_the_longest_part_is_kept(joined) -> None:
     assert not settings.use_range
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("chosen", "left"),
     [((100, 290), (100, JOINED - 1)), ((JOINED + 5, 320), (JOINED + 5, 320))],
@@ -491,6 +498,7 @@ def test_of_the_frames_that_were_chosen_those_stay_that_can(joined, chosen, left
     assert (settings.first_frame, settings.last_frame) == left
 
 
+@pytest.mark.slow
 def test_frames_that_are_put_in_move_what_is_left_out(joined) -> None:
     settings = joined.hangtime
     settings.use_range = False
@@ -555,6 +563,7 @@ def test_a_body_that_drifts_upwards_is_held_level_and_goes_on_where_it_was(jump)
     assert recorded - heights[-1] == pytest.approx(taken_out, abs=0.02)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("bone", "attribute", "usual"), [("Spine", "scale", 1.0), ("LeftFoot", "location", 0.0)]
 )

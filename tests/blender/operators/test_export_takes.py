@@ -123,6 +123,7 @@ def test_a_viewport_that_hides_armatures_does_not_empty_the_file(
     assert len(reimport(path, np.array([first, last])).bones) == len(accepted.data.bones)
 
 
+@pytest.mark.slow
 def test_a_pelvis_that_was_renamed_is_asked_for_where_it_is_needed(
     accepted: bpy.types.Object, tmp_path: Path
 ) -> None:

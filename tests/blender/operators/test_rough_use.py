@@ -153,6 +153,7 @@ def test_plots_of_a_recording_that_was_only_analyzed(run: bpy.types.Object, tmp_
     assert any(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_a_result_that_is_cancelled_while_it_is_finished_is_whole(
     analysed: bpy.types.Object, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -106,6 +106,7 @@ def test_reduced_keys_on_controls_keep_the_error_of_the_bones_that_follow() -> N
     assert found.slid < 1.0  # a point that stands, half as far
 
 
+@pytest.mark.slow
 def test_a_control_that_the_take_turns_about_a_locked_axis_keeps_the_error_too() -> None:
     rig = ik_rig()
     stand_and_squat(rig)

@@ -181,6 +181,7 @@ def test_a_figure_that_moves_as_one_takes_its_controls_along_and_turns_none() ->
         np.testing.assert_allclose(basis[:, :3, :3], [np.eye(3)] * 4, atol=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("turned", [False, True])
 def test_a_pole_gets_keys_of_its_turn_only_where_the_take_has_some(turned: bool) -> None:
     rig = ik_rig()

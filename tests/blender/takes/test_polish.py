@@ -115,6 +115,7 @@ def turned(bases: np.ndarray, others: np.ndarray) -> np.ndarray:
     return np.arccos(np.clip((trace - 1.0) / 2.0, -1.0, 1.0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mode", ["QUATERNION", "XYZ", "AXIS_ANGLE"])
 def test_polish_stays_through_many_renewals_and_never_grows(mode: str) -> None:
     armature = rig(mode)

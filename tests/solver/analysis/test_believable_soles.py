@@ -49,6 +49,7 @@ def beneath(recording: Recording, side: str) -> float:
     return float(ankle[2] - points[f"{side} heel"].track[0, 2])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("height", [0.08, 0.15, 0.3])
 def test_a_foot_that_floats_has_the_sole_of_the_other(height: float) -> None:
     recording = foot_up(height)

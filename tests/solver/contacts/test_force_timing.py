@@ -70,6 +70,7 @@ def test_times_do_not_depend_on_the_frame_rate(rate: int) -> None:
     assert flight.end == pytest.approx(usual.end, abs=0.5 / rate)
 
 
+@pytest.mark.slow
 def test_a_landing_between_coarse_frames_is_the_same_wherever_the_range_begins() -> None:
     """Between frames of 24/1.001 a second the feet are interpolated, and bend at the frames."""
     recording, rate = load_recording(JUMP), 24.0 / 1.001

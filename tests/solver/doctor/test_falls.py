@@ -111,6 +111,7 @@ def test_what_is_carried_unseen_tells_no_clock() -> None:
     assert FindingKind.TIME_SCALE not in kinds
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["run_1.bvh", "run_3.bvh"])
 def test_a_runs_short_flights_tell_a_size(name: str) -> None:
     """A parabola through them is up to 6 % off, for the centre of mass wanders by millimetres."""

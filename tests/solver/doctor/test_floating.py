@@ -38,6 +38,7 @@ def moved(recording: Recording) -> np.ndarray:
     return np.sqrt(np.mean(np.concatenate([each - each.mean(axis=0) for each in parts]) ** 2, 0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("metres", "seconds"), [(0.05, 2.0), (0.1, 3.0), (0.15, 4.0)])
 def test_a_body_that_floats_up_and_down_is_told_and_its_feet_held_level(metres, seconds) -> None:
     damaged = floating(metres, seconds).of(jump()).recording

@@ -80,6 +80,7 @@ def test_who_only_flies_stands_on_no_height(landed: bool, floors: int) -> None:
     assert FindingKind.BEGINS_IN_AIR in {f.kind for f in found}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("speed", [0.05, 0.1, -0.1])
 def test_a_floor_that_rises_is_told_as_drift_and_held_level(speed: float) -> None:
     """Without the note of unseen support that the feet leave behind, and at the true heights."""
@@ -100,6 +101,7 @@ def test_who_steps_up_does_not_drift() -> None:
     assert find_rise(stepped, figure()) is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["run_1.bvh", "run_3.bvh"])
 def test_a_run_on_a_treadmill_stands_on_the_floor(name: str) -> None:
     """Feet that go with the belt are not slow; those that turn back in the air are."""
@@ -121,6 +123,7 @@ def test_noise_of_a_runs_short_stances_is_no_drift(seed: int) -> None:
     assert FindingKind.SLIDING not in kinds
 
 
+@pytest.mark.slow
 def test_how_a_figure_stands_is_told_of_what_is_kept() -> None:
     """A dancer of whom capture loses the floor for all but the first 12 frames: they hid that the
     feet are centimetres above it, and had all else called unseen support."""
@@ -134,6 +137,7 @@ def test_how_a_figure_stands_is_told_of_what_is_kept() -> None:
     assert {finding.kind: finding.frames for finding in mended.findings} == notes
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("first", [14.0, 20.0])
 def test_a_dance_of_which_little_stands_does_not_slide(first: float) -> None:
     """A third of a second out of five; its drift would move the body by 2 m."""

@@ -45,6 +45,7 @@ def told(recording: Recording, *scene: SceneObject) -> list[str]:
     return [finding.kind.value for finding in diagnose(recording, scene=scene).findings]
 
 
+@pytest.mark.slow
 def test_the_floor_is_where_the_ground_is() -> None:
     low = raised(HEIGHT).of(jump()).recording
     floor = replace(platform(np.zeros(3)), positions=np.array([[0.0, 0.0, HEIGHT]]))

@@ -135,6 +135,7 @@ def test_the_rest_pose_is_left_out_before_all_else() -> None:
     assert diagnosis.repairs == Repairs(trim=3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("frames", [1, 5])
 def test_the_rest_pose_at_the_end_is_left_out_likewise(frames: int) -> None:
     """It was told as exchanged arms and a turn by half a turn."""
@@ -153,6 +154,7 @@ def test_rest_poses_at_both_ends_are_one_finding() -> None:
     assert found.frames == ((first, first + 2.0), (last - 1.0, last))
 
 
+@pytest.mark.slow
 def test_several_damages_are_mended_together() -> None:
     damaged = spiked(90.0).of(slowed(1.25).of(raised(0.3).of(jump()).recording).recording)
     diagnosis = diagnose(damaged.recording)

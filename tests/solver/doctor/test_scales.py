@@ -58,11 +58,13 @@ def test_a_child_in_a_files_own_units_stays_a_child(unit: float) -> None:
     assert found.repairs.time_scale == pytest.approx(24.0 / RATE, rel=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [0.01, UNSCALED, 100.0])
 def test_limits_in_metres_are_those_of_persons(factor: float) -> None:
     assert kinds(diagnose(sizes(factor))) == ["size"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [0.01, UNSCALED])
 def test_a_jump_is_told_at_any_size(factor: float) -> None:
     damaged = sized(factor, "size").of(joined(0.2).of(jump()).recording).recording
@@ -71,6 +73,7 @@ def test_a_jump_is_told_at_any_size(factor: float) -> None:
     assert found["jump"].amount == pytest.approx(20.0, rel=0.15)  # cm, as a person's
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("clip", "times"), [("BMC_run.bvh", 0.5), ("rokoko_jesse_dance.bvh", 5.0)])
 def test_a_frame_rate_that_an_analysis_refuses_is_told(clip: str, times: float) -> None:
     """Falls of a run that is too fast are short, and of a dance they do not agree."""

@@ -75,6 +75,7 @@ def test_the_fit_bends_no_joint_further_than_a_person_or_the_recording() -> None
     assert not fitted.transcription.guards
 
 
+@pytest.mark.slow
 def test_what_is_off_has_no_rows() -> None:
     assert unguarded().setup.human is None
     assert unguarded().motion.transcription.guard(RowKind.RANGE) is None
@@ -138,6 +139,7 @@ def test_hard_ranges_are_not_given_up_and_the_conflict_is_told() -> None:
     assert any(name.startswith("Neck") for name in told)
 
 
+@pytest.mark.slow
 def test_hard_ranges_hinder_nothing_that_can_be_met() -> None:
     hard = Requests(solution=SolverOptions(human=HumanRanges.HARD))
     assert adapt(fitted_hop(), replace(FAR, requests=hard)).solved

@@ -56,6 +56,7 @@ def test_a_cycle_stays_one() -> None:
     assert found(load_recording(RUN), *once) == once
 
 
+@pytest.mark.slow
 # Runs cut in a flight, while a foot stands, and just as one lands; and hops.
 @pytest.mark.parametrize(
     ("name", "first", "count"),

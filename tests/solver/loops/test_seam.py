@@ -84,6 +84,7 @@ def test_a_moved_stance_leaves_it_a_loop(cycle: Fit) -> None:
     np.testing.assert_allclose(*motion.com(ends, 1), atol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cut", CUTS)
 def test_a_stance_moved_aside_leaves_the_course(cut: str) -> None:
     """Every cycle has that foot there, and the other where it was: nothing turns."""

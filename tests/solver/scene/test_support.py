@@ -156,6 +156,7 @@ def offered_for(recording: Recording) -> str:
     return text
 
 
+@pytest.mark.slow
 def test_who_stands_at_0_before_he_jumps_down_stands_on_the_floor() -> None:
     """It was to be lowered to where it lands, and the box stayed below."""
     recording = lower(DROP)
@@ -167,6 +168,7 @@ def test_who_stands_at_0_before_he_jumps_down_stands_on_the_floor() -> None:
     assert damage(recording, *scene) == []
 
 
+@pytest.mark.slow
 def test_the_floor_and_the_box_are_right_alone_and_together() -> None:
     recording = lower(1.0)
     (floor,) = damage(recording)

@@ -29,6 +29,7 @@ def check(*forces: ForceRequest, body: BodyChange | None = None) -> None:
     check_requested(unfitted(subject), subject.problem)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("peak", [1e-6, 0.3])
 def test_a_peak_that_carries_nobody_is_refused_with_one_that_does_not_either(peak: float) -> None:
     with pytest.raises(PeakTooLow) as caught:

@@ -110,6 +110,7 @@ def test_where_nothing_is_moved_every_duration_stays() -> None:
     assert adapted(0.0).setup.context.timeline.unchanged
 
 
+@pytest.mark.slow
 def test_a_landing_that_hardly_moves_changes_hardly_anything() -> None:
     near = adapted(0.002)
     assert durations(near)[FLIGHT] == pytest.approx(recorded()[FLIGHT], abs=0.002)

@@ -109,6 +109,7 @@ def test_times_follow_once_the_pin_rests() -> None:
     assert follower.motion.duration == fit.motion.duration
 
 
+@pytest.mark.slow
 def test_a_far_jump_of_the_mouse_takes_some_updates() -> None:
     follower = Follower(fitted_hop(), moved(0.0))
     assert follower.follow(moved(0.9)) is DragStatus.CONVERGING
@@ -141,6 +142,7 @@ def test_it_goes_back_to_where_it_began() -> None:
     assert np.linalg.norm(apart, axis=2).max() < 0.01
 
 
+@pytest.mark.slow
 def test_it_begins_at_an_adaptation_of_the_same_problem() -> None:
     fit = fitted_hop()
     last = adapt(fit, moved(0.2))

@@ -34,6 +34,7 @@ def test_a_recording_is_not_too_fast_beside_itself() -> None:
     assert too_fast(motion, motion) is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "requests",
     [

@@ -222,6 +222,7 @@ def test_the_ghost_rides_too() -> None:
     np.testing.assert_allclose(ridden, fitted_hop().motion.com(times), atol=5e-3)
 
 
+@pytest.mark.slow
 def test_a_ghost_that_lands_on_what_moves_comes_to_rest_on_it() -> None:
     problem = asked(TRAIN, Pin("b", "ground 2", on="train"))
     follower = Follower(fitted_hop(), asked(TRAIN))

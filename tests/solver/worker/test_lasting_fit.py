@@ -165,6 +165,7 @@ def test_a_dance_without_a_flight_is_fitted() -> None:
     assert fit_quality(found).joint_centres_rms_cm < 2.5
 
 
+@pytest.mark.slow
 def test_who_lies_on_the_floor_stays_there() -> None:
     """The toes alone touch, which hold nobody up who leans over by 80 degrees."""
     stands = load_recording(JUMP).window(1.0, 60.0)

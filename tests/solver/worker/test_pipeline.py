@@ -235,6 +235,7 @@ def test_what_no_numbers_can_hold_is_a_fault() -> None:
         np.linalg.cholesky(-np.eye(2))
 
 
+@pytest.mark.slow
 def test_what_is_beyond_reason_ends_with_what_could_not_be_met() -> None:
     """Matrices that were not positive definite ended in a traceback."""
     alone = SolverOptions(keep_times=True, solid=False, human=HumanRanges.OFF)

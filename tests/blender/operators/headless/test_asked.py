@@ -144,6 +144,7 @@ def test_a_blend_is_a_clip_too(clip: Path, tmp_path: Path, capsys) -> None:
     assert "Left toe 2" in printed
 
 
+@pytest.mark.slow
 def test_of_a_blend_with_two_characters_the_one_that_is_read_is_named_and_may_be_chosen(
     clip: Path, tmp_path: Path, capsys
 ) -> None:

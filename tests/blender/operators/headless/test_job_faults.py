@@ -25,6 +25,7 @@ def one_line(capsys) -> str:
     return said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("recipe", "line"),
     [

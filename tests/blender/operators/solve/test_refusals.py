@@ -321,6 +321,7 @@ def test_a_file_that_another_processor_analysed_needs_no_analysis(
         assert analysis_is_of(settings, read)
 
 
+@pytest.mark.slow
 def test_a_frame_rate_that_changed_is_named(analysed: bpy.types.Object) -> None:
     """As importing another clip sets it. At the analysis' own all is as before."""
     render = bpy.context.scene.render
@@ -396,6 +397,7 @@ def test_what_else_an_analysis_depends_on_is_named(
     assert_refused(bpy.ops.hangtime.adapt, analysed, named)
 
 
+@pytest.mark.slow
 def test_an_action_may_be_renamed_after_the_analysis(analysed: bpy.types.Object) -> None:
     analysed.animation_data.action.name = "Take 7"
     assert bpy.ops.hangtime.fit() == {"FINISHED"}

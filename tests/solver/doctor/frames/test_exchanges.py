@@ -131,6 +131,7 @@ def test_the_problem_that_asks_for_it_is_mended() -> None:
     assert apart(mended, hop()) < 0.015
 
 
+@pytest.mark.slow
 def test_no_box_is_offered_where_legs_are_exchanged() -> None:
     """Neither foot touches the floor there, for one is where the other was."""
     jacks = exchanged(30, Mend.LEGS, angles=True).of(load_recording(JACKS)).recording

@@ -32,6 +32,7 @@ def test_a_full_turn_is_told_with_its_bone_and_frames(part: Part, frames: int, r
         assert apart(mended, damaged.original) < 0.005
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("part", [Part.PELVIS, Part.THIGH])
 def test_nothing_else_is_told_of_it_and_nothing_cut(part: Part) -> None:
     """It was told as a jump, half of the clip to be left out, and of the hips as exchanged legs."""

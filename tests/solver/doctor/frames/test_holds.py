@@ -34,6 +34,7 @@ def alone(diagnosis: Diagnosis, kind: FindingKind) -> None:
     assert [finding.kind for finding in diagnosis.findings] == [kind]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", [30.0, 60.0, 120.0])
 def test_frames_put_in_aloft_are_taken_out(rate: float) -> None:
     whole, count = at_rate(jump(), rate), round(0.3 * rate)
@@ -63,6 +64,7 @@ def test_a_pose_held_over_others_aloft_is_filled_in(rate: float) -> None:
     assert apart(repaired(damaged, diagnosis.repairs), whole) < 0.015
 
 
+@pytest.mark.slow
 def test_both_are_told_apart_and_mended_together() -> None:
     damaged = frozen(0.1, repeated=True).of(frozen(0.3).of(jump()).recording).recording
     diagnosis = diagnose(damaged)
@@ -85,6 +87,7 @@ def test_who_stops_softly_and_stands_still_is_no_damage() -> None:
     assert holds(paused) == []
 
 
+@pytest.mark.slow
 def test_where_another_take_begins_after_a_hold_is_a_jump() -> None:
     """Nothing lies between the two that could be filled in."""
     rows, at = np.arange(len(jump().frames)), round(ALOFT * jump().rate)

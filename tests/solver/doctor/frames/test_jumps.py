@@ -43,6 +43,7 @@ def test_where_takes_were_joined_the_longest_part_is_kept(at, kept) -> None:
     assert [f for f in diagnose(mended).findings if not f.kind.note] == []
 
 
+@pytest.mark.slow
 def test_what_a_cut_leaves_holds_no_jump() -> None:
     """Beside the longer first step the second one is nothing, until that is left out."""
     heads = jump().heads.copy()
