@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import ExitStack
+from typing import Any
 
 import bpy
 from bpy.app.handlers import persistent
@@ -12,7 +13,7 @@ from bpy.app.handlers import persistent
 from ..accessors import attached, snapshot
 from ..app_handlers import add_handler
 
-_Pointer = tuple[bpy.types.PropertyGroup, str, bpy.types.Object]
+_Pointer = tuple[Any, str, bpy.types.Object]  # a group's, by the property's name
 
 
 def leave_out_of_files(undo: ExitStack) -> None:
