@@ -26,7 +26,7 @@ from ..accessors import current_scene
 from ..armature.poses import frames_per_second, metres_per_unit
 from ..properties.contact import HangtimeContact
 from ..properties.settings import HangtimeSettings
-from ..properties.stances import place
+from ..properties.stances import active_contact, place
 from ..repairs.stored import applied, of_recording, unreadable
 from ..repairs.unreadable import require_readable
 from ..rows.copying import rows_named
@@ -325,9 +325,8 @@ def write_analysis(
     for row, kept in zip(rows[len(contacts) :], added, strict=True):
         _put(row, kept)
     lost = _restore(settings, edits, found.schedule, first)
-    if edits:
-        settings.active_contact = min(settings.active_contact, len(settings.contacts) - 1)
-    else:
+    settings.active_contact = min(settings.active_contact, len(settings.contacts) - 1)
+    if not edits or active_contact(settings) is None:
         _choose_first_landing(settings)
     return lost
 
@@ -335,14 +334,16 @@ def write_analysis(
 def _choose_first_landing(settings: HangtimeSettings) -> None:
     """What artists mostly move; the first stance where nothing flies."""
     flown = False
-    landing = settings.contacts[0].phase if len(settings.contacts) else ""
+    contacts = listed(settings)
+    landing = contacts[0].phase if contacts else ""
     for phase in phases_of(settings):
         if flown and phase.is_ground:
             landing = phase.name
             break
         flown = flown or not phase.is_ground
-    phases = [row.phase for row in settings.contacts]
-    settings.active_contact = phases.index(landing) if landing in phases else 0
+    rows = enumerate(settings.contacts)
+    of_landing = (i for i, row in rows if row.phase == landing and not row.surplus)
+    settings.active_contact = next(of_landing, 0)
 
 
 def _put(row: ContactRow, held: HeldContact) -> None:

@@ -22,6 +22,7 @@ from ..properties.body_change import HangtimeBodyChange
 from ..properties.constraint import HangtimeConstraint
 from ..properties.settings import HangtimeSettings
 from ..rows.choices import BodyKind
+from ..rows.phases import listed
 from ..rows.row_parts import RowContext
 from ..rows.times import Clip
 from .body_requests import body_change, shapes_of
@@ -41,7 +42,7 @@ def requests_of(
     """
     rows = [row for row in settings.constraints if row.used]
     changes = [row for row in settings.body_changes if row.used]
-    _require_names([*rows, *changes], [row.name for row in settings.contacts])
+    _require_names([*rows, *changes], [row.name for row in listed(settings)])
     clip = Clip.of(settings, span)
     metres = metres_per_unit(current_scene())
     own = metres * armature.matrix_world.median_scale
@@ -50,9 +51,9 @@ def requests_of(
     for row in rows:
         kind = KINDS[row.kind]
         made.setdefault(kind.requests, []).append(kind.record(row, context))
-    listed: dict[str, Any] = {field: tuple(records) for field, records in made.items()}
+    lists: dict[str, Any] = {field: tuple(records) for field, records in made.items()}
     shapes = shapes_of(changes, context)
-    return Requests(**listed, shapes=shapes, body=body_change(settings, changes, context))
+    return Requests(**lists, shapes=shapes, body=body_change(settings, changes, context))
 
 
 def joined(first: Requests, second: Requests) -> Requests:

@@ -15,7 +15,7 @@ from ..properties.constraint import HangtimeConstraint
 from ..properties.settings import HangtimeSettings, settings_of
 from ..rows.choices import BodyKind, Span
 from ..rows.kind import BoneUse, ConstraintKind, NewRange
-from ..rows.phases import PhaseSpan, phases_of
+from ..rows.phases import PhaseSpan, listed, phases_of
 
 AROUND = 5  # frames to either side of the playhead, where no phase is known
 
@@ -31,7 +31,7 @@ def add_constraint(
     row: HangtimeConstraint = settings.constraints.add()
     row.kind = kind.name
     if kind.bones is BoneUse.TOUCHING:
-        touching = {contact.bone for contact in settings.contacts}
+        touching = {contact.bone for contact in listed(settings)}
         bones = [bone for bone in bones if bone in touching]
     if kind.bones is BoneUse.NONE:
         bones = ()
@@ -80,7 +80,7 @@ def set_bones(row: HangtimeConstraint | HangtimeBodyChange, bones: Iterable[str]
 
 def free_name(settings: HangtimeSettings, wanted: str) -> str:
     """The name, with a number where a constraint, body change or contact has it already."""
-    lists = (settings.constraints, settings.body_changes, settings.contacts)
+    lists = (settings.constraints, settings.body_changes, listed(settings))
     taken = {row.name for rows in lists for row in rows}
     name, number = wanted, 1
     while name in taken:

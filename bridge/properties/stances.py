@@ -148,9 +148,10 @@ def stance_frames(settings: Settings, phase: str) -> tuple[float, float] | None:
 
 
 def active_contact(settings: Settings) -> ContactRow | None:
-    """The contact chosen in the list."""
+    """The contact chosen in the list, which shows no surplus ones."""
     index = settings.active_contact
-    return settings.contacts[index] if 0 <= index < len(settings.contacts) else None
+    row = settings.contacts[index] if 0 <= index < len(settings.contacts) else None
+    return None if row is None or row.surplus else row
 
 
 def active_stance(settings: Settings) -> StanceRow | None:

@@ -12,6 +12,9 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 from hangtime.bridge.accessors import current_action, snapshot
 from hangtime.bridge.armature.keys_digest import keys_digest
 from hangtime.bridge.armature.poses import sample
+from hangtime.bridge.constraints.requests import requests_of
+from hangtime.bridge.constraints.rows import free_name
+from hangtime.bridge.properties.stances import active_contact
 from hangtime.bridge.rows.phases import listed
 
 pytestmark = pytest.mark.usefixtures("_enabled")
@@ -82,6 +85,24 @@ def test_an_override_lets_go_of_contacts_that_only_its_library_found(
     again = saved_again(tmp_path / "shot.blend")
     assert contacts_of(again) == found
     assert len(again.hangtime.parts) == len({part.name for part in again.hangtime.parts})
+
+
+def test_contacts_that_an_override_let_go_are_neither_chosen_nor_have_a_name(
+    analysed: bpy.types.Object, tmp_path: Path
+) -> None:
+    extra = analysed.hangtime.contacts.add()
+    extra.name, extra.point, extra.phase, extra.found_start = "Hand 1", "Hand", "ground 3", 900.0
+    analysed.hangtime.active_contact = len(analysed.hangtime.contacts) - 1
+    override = overridden(analysed, tmp_path / "library.blend")
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert active_contact(override.hangtime).name in dict(contacts_of(override))
+    override.hangtime.active_contact = override.hangtime.contacts.find("Hand 1")
+    assert not bpy.ops.hangtime.remove_contact.poll()
+    row = override.hangtime.constraints.add()
+    row.name, row.kind = free_name(override.hangtime, "Hand 1"), "LIFT"
+    row.phase = "ground 2"
+    row.bones.add().name = override.data.bones[-1].name
+    assert row.name == "Hand 1" in requests_of(override.hangtime, override).names
 
 
 def test_what_is_analysed_in_the_library_later_leaves_an_overrides_own_analysis(
