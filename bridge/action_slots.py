@@ -52,23 +52,19 @@ def result_in(
     return next(results, None)
 
 
-def copied_results(
-    action: bpy.types.Action, result: bpy.types.Action
-) -> dict[bpy.types.Action, bpy.types.ActionSlot]:
-    """Where an action is a copy of the one in which a result is a slot: the results in that, and
-    their slots' copies, which are nobody's results yet."""
-    home, copies = home_of(result), {}
-    if home is None or home[0] == action:
-        return {}
-    for other in bpy.data.actions:
-        theirs = home_of(other)
-        if theirs is None or theirs[0] != home[0]:
-            continue
-        slot = _with_handle(action, theirs[1].handle)
+def copied_slots(action: bpy.types.Action) -> dict[bpy.types.Action, bpy.types.ActionSlot]:
+    """Where an action is a copy of one with results: these, and their slots' copies, as far as
+    these are nobody's results yet."""
+    copies = {}
+    for result in bpy.data.actions:
+        home = home_of(result)
+        slot = _with_handle(action, home[1].handle) if home is not None else None
         # Handles are counted in each action, so that they tell nothing by themselves.
-        if slot is not None and slot.identifier == theirs[1].identifier:
-            copies[other] = slot
-    return {} if any(result_in(action, slot) for slot in copies.values()) else copies
+        if home is None or slot is None or slot.identifier != home[1].identifier:
+            continue
+        if result_in(action, slot) is None:
+            copies[result] = slot
+    return copies
 
 
 def settle_copy(copy: bpy.types.Action, home: Home) -> None:

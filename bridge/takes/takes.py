@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import bpy
 
 from ..accessors import HOLDS, current_action, source_of
-from ..action_slots import copied_results, lost_slot, settle_copy
+from ..action_slots import copied_slots, lost_slot, settle_copy
 from ..armature.actions import recorded_action, show
 from ..armature.fcurves import slot_identifier
 from ..armature.keys_digest import keys_digest
@@ -108,13 +108,33 @@ def derive(action: bpy.types.Action, source: bpy.types.Action, armature: bpy.typ
 
 def adopt_copied_slots(armature: bpy.types.Object) -> None:
     """Where an armature was copied with its action (Shift-D), in which results are slots: has it
-    results of its own of these slots' copies, which would be taken for recordings."""
+    results of its own of these slots' copies, which would be taken for recordings. Copies of
+    results of other armatures that share the recording are removed."""
     settings, data = settings_of(armature), armature.animation_data
     known = settings.adapted or settings.source
     action = data.action if data is not None else None
     if known is None or action is None or action.library is not None:
         return
-    copies = copied_results(action, known)
+    copies = {r: slot for r, slot in copied_slots(action).items() if root_of(r) == root_of(known)}
+    if not copies:
+        return
+    shown, maker = data.action_slot, action_settings(known).maker
+    theirs = [r for r, slot in copies.items() if action_settings(r).maker != maker]
+    others = {r: copies.pop(r) for r in theirs if copies[r] != shown}
+    if action.users - action.use_fake_user == 1:  # they were not copied, too
+        for slot in others.values():
+            action.slots.remove(slot)
+    _adopt(armature, action, copies)
+
+
+def _adopt(
+    armature: bpy.types.Object,
+    action: bpy.types.Action,
+    copies: dict[bpy.types.Action, bpy.types.ActionSlot],
+) -> None:
+    """Have an armature results of its own. copies: of results that are slots the slots' copies in
+    its action."""
+    settings = settings_of(armature)
     own = {result: result.copy() for result in copies}
     for result, copy in own.items():
         settle_copy(copy, (action, copies[result]))
@@ -122,9 +142,8 @@ def adopt_copied_slots(armature: bpy.types.Object) -> None:
         made = action_settings(copy)
         made.recording = own.get(made.recording, action)
         made.maker, made.owned = armature, True
-    if own:
-        settings.adapted = own.get(settings.adapted, settings.adapted)
-        settings.source = own.get(settings.source, settings.source)
+    settings.adapted = own.get(settings.adapted, settings.adapted)
+    settings.source = own.get(settings.source, settings.source)
 
 
 def free_name(root: str, word: str) -> str:

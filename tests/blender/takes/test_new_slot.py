@@ -10,7 +10,7 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import current_action, shown_range, source_of
-from hangtime.bridge.action_slots import home_of
+from hangtime.bridge.action_slots import alone, home_of
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.actions import recorded_action, show, showing_action
 from hangtime.bridge.armature.incremental import complete
@@ -22,7 +22,7 @@ from hangtime.bridge.files.reimport import reimport
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.rows.choices import WrittenAs
 from hangtime.bridge.takes.plan import AdaptedMotion
-from hangtime.bridge.takes.takes import look_again, note_made, start_from_result, takes_of
+from hangtime.bridge.takes.takes import derive, look_again, note_made, start_from_result, takes_of
 from hangtime.bridge.takes.write_result import (
     lay_in_slot,
     require_slot,
@@ -90,13 +90,19 @@ def test_the_result_is_a_slot_and_the_take_beside_it_is_as_it_was(
     assert armature.animation_data.action_slot.name_display == result.name
 
 
+def duplicate(armature: bpy.types.Object, *, linked: bool = False) -> bpy.types.Object:
+    """A copy of a character: with its own action (Shift-D), or linked to the same (Alt-D)."""
+    bpy.ops.object.select_all(action="DESELECT")
+    armature.select_set(True)
+    bpy.context.view_layer.objects.active = armature
+    bpy.ops.object.duplicate(linked=linked)
+    return bpy.context.view_layer.objects.active
+
+
 @with_slots
 def test_a_copied_character_has_a_slot_and_a_result_of_its_own(armature: bpy.types.Object) -> None:
     result, shown = lifted(armature, 0.1), sample(armature, FRAMES).matrices
-    armature.select_set(True)
-    bpy.context.view_layer.objects.active = armature
-    bpy.ops.object.duplicate()
-    copy = bpy.context.view_layer.objects.active
+    copy = duplicate(armature)
     action = copy.animation_data.action
     assert action != armature.animation_data.action
     own = copy.hangtime.adapted
@@ -108,6 +114,39 @@ def test_a_copied_character_has_a_slot_and_a_result_of_its_own(armature: bpy.typ
     assert copy.animation_data.action_slot.name_display != result.name
     assert current_action(armature) == result
     np.testing.assert_array_equal(sample(armature, FRAMES).matrices, shown)
+
+
+@with_slots
+def test_a_copied_character_has_its_slots_results_whatever_came_after_them(
+    armature: bpy.types.Object,
+) -> None:
+    take = current_action(armature)
+    keys = keys_digest(take)
+    lifted(armature, 0.1)
+    later = alone(take)
+    derive(later, take, armature)
+    armature.hangtime.adapted = later
+    show(armature, take)
+    copy = duplicate(armature)
+    action = copy.animation_data.action
+    first, second = takes_of(copy)
+    assert (first.action, home_of(second.action)[0]) == (action, action)
+    assert keys_digest(action) == keys
+
+
+@with_slots
+def test_a_copied_character_has_no_results_of_one_with_the_same_recording(
+    armature: bpy.types.Object,
+) -> None:
+    theirs = lifted(armature, 0.1)
+    other = duplicate(armature, linked=True)
+    show(other, recorded_action(other))
+    names = slots(current_action(other))
+    own = lifted(other, 0.2)
+    copy = duplicate(other)
+    action = copy.animation_data.action
+    assert [take.action for take in takes_of(copy)] == [action, copy.hangtime.adapted]
+    assert slots(action) == [name for name in (*names, own.name) if name != theirs.name]
 
 
 @with_slots
