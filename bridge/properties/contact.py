@@ -130,5 +130,9 @@ class HangtimeStance(bpy.types.PropertyGroup):
         )
     )
 
+    def let_go(self) -> None:
+        """Have it move nothing; without contacts it is not listed."""
+        self.shifted, self.turned = (0.0, 0.0, 0.0), 0.0
+
 
 CLASSES = (HangtimeContact, HangtimeStance)

@@ -14,6 +14,7 @@ import bpy
 from ..accessors import attached
 from ..rows.copying import copy_settings
 from .settings import HangtimeSettings
+from .stances import stance_contacts
 
 _FOUND = ("contacts", "stances", "findings", "parts")  # by an analysis, each name once
 _ASKED = ("constraints", "body_changes", "surfaces")
@@ -72,10 +73,13 @@ def _join_namesakes(rows: Any, linked: int) -> None:
 
 
 def _let_go(settings: HangtimeSettings, theirs: HangtimeSettings) -> None:
-    """Of contacts that only another analysis in the library found."""
+    """Of contacts and stances that only another analysis in the library found."""
     if settings.analysed_contacts in ("", theirs.analysed_contacts):
         return
     names = str(settings.analysed_contacts).splitlines()
     for row in settings.contacts[: len(theirs.contacts)]:
         if row.name not in names:
             row.let_go()
+    for stance in settings.stances[: len(theirs.stances)]:
+        if not stance_contacts(settings, stance.name):
+            stance.let_go()

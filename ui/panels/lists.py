@@ -7,7 +7,7 @@ from ...bridge.constraint_kinds import KINDS
 from ...bridge.properties.contact import HangtimeContact, HangtimeStance
 from ...bridge.properties.overridden_lists import linked_count
 from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
-from ...bridge.properties.stances import active_stance, stance_frames
+from ...bridge.properties.stances import active_stance, stance_contacts, stance_frames
 from ...bridge.properties.surface import HangtimeSurface
 from ...bridge.rows.choices import BodyKind, Met, SurfaceRole
 from ...bridge.rows.kind import Icon, Row
@@ -191,6 +191,14 @@ class StanceList(bpy.types.UIList):
         line.label(text=role, icon="TRIA_UP_BAR" if role == TAKE_OFF else "TRIA_DOWN_BAR")
         if frames is not None:
             _draw_frames(line, frames)
+
+    def filter_items(  # type: ignore[override]
+        self, _context: bpy.types.Context, settings: HangtimeSettings, name: str
+    ) -> tuple[list[int], list[int]]:
+        """Only stances with contacts: an override cannot drop what its library alone found."""
+        rows = getattr(settings, name)
+        kept = [bool(stance_contacts(settings, row.name)) for row in rows]
+        return [self.bitflag_filter_item if keep else 0 for keep in kept], []
 
 
 def called(settings: HangtimeSettings, phase: str) -> str:

@@ -76,7 +76,8 @@ def test_an_override_lets_go_of_contacts_that_only_its_library_found(
     analysed: bpy.types.Object, tmp_path: Path
 ) -> None:
     found = contacts_of(analysed)
-    analysed.hangtime.stances.add().name = "ground 3"
+    stance = analysed.hangtime.stances.add()
+    stance.name, stance.shifted, stance.turned = "ground 3", (0.1, 0.0, 0.0), 0.2
     extra = analysed.hangtime.contacts.add()
     extra.name, extra.point, extra.phase, extra.found_start = "Hand 1", "Hand", "ground 3", 900.0
     override = overridden(analysed, tmp_path / "library.blend")
@@ -84,6 +85,8 @@ def test_an_override_lets_go_of_contacts_that_only_its_library_found(
     assert contacts_of(override) == found
     again = saved_again(tmp_path / "shot.blend")
     assert contacts_of(again) == found
+    stance = again.hangtime.stances["ground 3"]
+    assert (*stance.shifted, stance.turned) == (0.0, 0.0, 0.0, 0.0)
     assert len(again.hangtime.parts) == len({part.name for part in again.hangtime.parts})
 
 
@@ -125,6 +128,7 @@ def test_what_is_analysed_in_the_library_later_leaves_an_overrides_own_analysis(
         theirs.hangtime.contacts.add().name = name
     for name in (*stances, "ground 3"):
         theirs.hangtime.stances.add().name = name
+    theirs.hangtime.stances["ground 3"].turned = 0.2
     theirs.hangtime.constraints.add().name = "Theirs"
     theirs.hangtime.analysed_contacts = "another analysis"
     bpy.ops.wm.save_mainfile()
@@ -133,6 +137,7 @@ def test_what_is_analysed_in_the_library_later_leaves_an_overrides_own_analysis(
     again = bpy.context.view_layer.objects.active
     assert contacts_of(again) == sorted(own.items())
     assert again.hangtime.stances["ground 2"].up == pytest.approx(0.05)
+    assert again.hangtime.stances["ground 3"].turned == 0.0
     assert [row.name for row in again.hangtime.constraints] == ["Theirs", "Mine"]
     lists = ("hangtime.contacts", "hangtime.stances", "hangtime.constraints")
     kept = [each for each in again.override_library.properties if each.rna_path in lists]
