@@ -98,24 +98,28 @@ def _plain(group: Any, name: str) -> object:
     return tuple(value) if many else value
 
 
-def settings_digest(group: bpy.types.PropertyGroup, skip: Collection[str] = ()) -> str:
+def settings_digest(
+    group: bpy.types.PropertyGroup, skip: Collection[str] = (), *, off: bool = True
+) -> str:
     """A number for everything that is stored in a group, and what its texts say; another where
     something differs. Of a data-block that it points to counts only whether there is one: which,
-    `settings_targets` tells."""
-    return str(crc32(repr(_stored(group, skip)).encode()))
+    `settings_targets` tells. off: whether rows that are switched off count."""
+    return str(crc32(repr(_stored(group, skip, off=off)).encode()))
 
 
 def settings_targets(
-    group: bpy.types.PropertyGroup, skip: Collection[str] = ()
+    group: bpy.types.PropertyGroup, skip: Collection[str] = (), *, off: bool = True
 ) -> list[bpy.types.ID]:
-    """The data-blocks that a group points to, texts aside, in an order that is always the same."""
+    """The data-blocks that a group points to, texts aside, in an order that is always the same.
+    off: as of `settings_digest`."""
     found: list[bpy.types.ID] = []
     for name in _names(group, skip):
         what, value = group.bl_rna.properties[name], getattr(group, name)
         if what.type == "COLLECTION":
-            found += [each for row in value for each in settings_targets(row, skip)]
+            rows = _counted(value, off=off)
+            found += [each for row in rows for each in settings_targets(row, skip, off=off)]
         elif _is_group(group, what):
-            found += settings_targets(value, skip)
+            found += settings_targets(value, skip, off=off)
         elif what.type == "POINTER" and not isinstance(value, bpy.types.Text | None):
             found.append(value)
     return found
@@ -135,15 +139,20 @@ def _names(group: bpy.types.PropertyGroup, skip: Collection[str]) -> list[str]:
     return [name for name in names if name not in {"rna_type", *computed, *skip}]
 
 
-def _stored(group: Any, skip: Collection[str]) -> list[tuple[str, object]]:
+def _counted(rows: Any, *, off: bool) -> list[Any]:
+    return [row for row in rows if off or getattr(row, "used", True)]
+
+
+def _stored(group: Any, skip: Collection[str], *, off: bool) -> list[tuple[str, object]]:
     found: list[tuple[str, object]] = []
     for name in _names(group, skip):
         what = group.bl_rna.properties[name]
         value: Any = getattr(group, name) if what.type in {"COLLECTION", "POINTER"} else None
         if what.type == "COLLECTION":
-            found.append((name, [_stored(row, skip) for row in value]))
+            rows = _counted(value, off=off)
+            found.append((name, [_stored(row, skip, off=off) for row in rows]))
         elif _is_group(group, what):
-            found.append((name, _stored(value, skip)))
+            found.append((name, _stored(value, skip, off=off)))
         elif isinstance(value, bpy.types.Text):
             found.append((name, value.as_string()))
         elif what.type == "POINTER":

@@ -86,7 +86,7 @@ class AskedSettings:
         armature = settings.id_data
         assert isinstance(armature, bpy.types.Object)
         surfaces = surfaces_digest(settings, armature, {})
-        return AskedSettings(held, settings_digest(settings, _NOT_ASKED), surfaces)
+        return AskedSettings(held, settings_digest(settings, _NOT_ASKED, off=False), surfaces)
 
 
 def root_of(action: bpy.types.Action) -> bpy.types.Action:
@@ -318,7 +318,7 @@ def note_made(
     put_settings(asked.held, made.edit)
     made.asked_key, made.surfaces_key = asked.key, asked.surfaces
     made.asked_targets.clear()
-    for target in settings_targets(made.edit, _NOT_ASKED):
+    for target in settings_targets(made.edit, _NOT_ASKED, off=False):
         made.asked_targets.add().target = target
     made.take_key, made.own_key = take_digest(armature, source), _digest(action)
     made.stale, made.polished, made.holds_polish = "", False, False
@@ -376,11 +376,14 @@ def look_again(armature: bpy.types.Object) -> bool:
 
 
 def _asks_the_same(edit: HangtimeSettings, kept: HangtimeAction) -> bool:
-    """Whether an edit is what a result was made with."""
+    """Whether an edit is what a result was made with. What is switched off asks for nothing, as do
+    linked rows that an edit lacks; results of earlier versions count it."""
     targets = [row.target for row in kept.asked_targets]
-    if settings_targets(edit, _NOT_ASKED) != targets:
-        return False
-    return settings_digest(edit, _NOT_ASKED) == str(kept.asked_key)
+    return any(
+        settings_targets(edit, _NOT_ASKED, off=off) == targets
+        and settings_digest(edit, _NOT_ASKED, off=off) == str(kept.asked_key)
+        for off in (False, True)
+    )
 
 
 def polished_result(armature: bpy.types.Object) -> bpy.types.Action | None:

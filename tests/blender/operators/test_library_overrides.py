@@ -16,6 +16,7 @@ from hangtime.bridge.constraints.requests import requests_of
 from hangtime.bridge.constraints.rows import free_name
 from hangtime.bridge.properties.stances import active_contact
 from hangtime.bridge.rows.phases import listed
+from hangtime.bridge.takes.takes import derive, look_again, note_made, show_take
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 
@@ -147,6 +148,35 @@ def test_what_is_analysed_in_the_library_later_leaves_an_overrides_own_analysis(
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
     assert contacts_of(again) == sorted(own.items())
     assert again.hangtime.stances["ground 2"].up == pytest.approx(0.05)
+
+
+def test_a_constraint_that_its_library_got_later_is_off_in_an_edit_that_lacks_it(
+    jump: bpy.types.Object, tmp_path: Path
+) -> None:
+    library, shot = tmp_path / "library.blend", tmp_path / "shot.blend"
+    jump.hangtime.constraints.add().name = "Old"
+    override = overridden(jump, library)
+    take = current_action(override)
+    result = take.copy()
+    result.use_fake_user = True
+    derive(result, take, override)
+    override.hangtime.adapted = result
+    note_made(override, result, None, 0)
+    name = result.name
+    bpy.ops.wm.save_as_mainfile(filepath=str(shot))
+    bpy.ops.wm.open_mainfile(filepath=str(library))
+    bpy.context.view_layer.objects.active.hangtime.constraints.add().name = "Theirs"
+    bpy.ops.wm.save_mainfile()
+
+    bpy.ops.wm.open_mainfile(filepath=str(shot))
+    again, result = bpy.context.view_layer.objects.active, bpy.data.actions[name]
+    look_again(again)
+    assert result.hangtime.stale
+    again.hangtime.adapted = None  # as where another take's edit is at work
+    show_take(again, result)
+    assert not again.hangtime.constraints["Theirs"].used
+    look_again(again)
+    assert not result.hangtime.stale
 
 
 def test_a_linked_take_is_shown_though_another_one_has_its_name(
