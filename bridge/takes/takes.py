@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 import json
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import bpy
@@ -109,7 +110,7 @@ def derive(action: bpy.types.Action, source: bpy.types.Action, armature: bpy.typ
 def adopt_copied_slots(armature: bpy.types.Object) -> None:
     """Where an armature was copied with its action (Shift-D), in which results are slots: has it
     results of its own of these slots' copies, which would be taken for recordings. Copies of
-    results of other armatures that share the recording are removed."""
+    results of other armatures that share the recording are nobody's."""
     settings, data = settings_of(armature), armature.animation_data
     known = settings.adapted or settings.source
     action = data.action if data is not None else None
@@ -119,21 +120,20 @@ def adopt_copied_slots(armature: bpy.types.Object) -> None:
     if not copies:
         return
     shown, maker = data.action_slot, action_settings(known).maker
-    theirs = [r for r, slot in copies.items() if action_settings(r).maker != maker]
-    others = {r: copies.pop(r) for r in theirs if copies[r] != shown}
-    if action.users - action.use_fake_user == 1:  # they were not copied, too
-        for slot in others.values():
-            action.slots.remove(slot)
-    _adopt(armature, action, copies)
+    own = {r for r in copies if action_settings(r).maker == maker or copies[r] == shown}
+    if action.users - action.use_fake_user > 1:  # the others may have been copied, too
+        copies = {r: slot for r, slot in copies.items() if r in own}
+    _adopt(armature, action, copies, own)
 
 
 def _adopt(
     armature: bpy.types.Object,
     action: bpy.types.Action,
     copies: dict[bpy.types.Action, bpy.types.ActionSlot],
+    listed: Collection[bpy.types.Action],
 ) -> None:
     """Have an armature results of its own. copies: of results that are slots the slots' copies in
-    its action."""
+    its action. listed: those of them whose copies are the armature's."""
     settings = settings_of(armature)
     own = {result: result.copy() for result in copies}
     for result, copy in own.items():
@@ -141,7 +141,7 @@ def _adopt(
         copy.use_fake_user = result.use_fake_user
         made = action_settings(copy)
         made.recording = own.get(made.recording, action)
-        made.maker, made.owned = armature, True
+        made.maker, made.owned = armature if result in listed else None, True
     settings.adapted = own.get(settings.adapted, settings.adapted)
     settings.source = own.get(settings.source, settings.source)
 

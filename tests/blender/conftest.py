@@ -78,6 +78,17 @@ def adapted(_adapted_file: Path) -> bpy.types.Object:
     return opened(_adapted_file)
 
 
+@pytest.fixture
+def armature() -> bpy.types.Object:
+    """A figure with a recording, alone in its file."""
+    from hangtime.tests.blender.helpers import rigs
+
+    rigs.reset()
+    made = rigs.make_armature()
+    rigs.animate(made)
+    return made
+
+
 def saved(path: Path) -> Path:
     import bpy
 

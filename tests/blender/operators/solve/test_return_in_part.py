@@ -8,9 +8,11 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
+from hangtime.bridge.accessors import current_action
 from hangtime.bridge.files.import_clip import import_clip
 from hangtime.devtools.recordings import HOPS
 from hangtime.tests.blender.helpers import rigs
+from hangtime.tests.blender.helpers.actions import snapshot
 from hangtime.tests.helpers.clips import mocap_path
 
 pytestmark = pytest.mark.usefixtures("_enabled")
@@ -19,7 +21,9 @@ pytestmark = pytest.mark.usefixtures("_enabled")
 @pytest.mark.slow
 def test_it_is_back_by_a_frame_after_those_that_are_adapted() -> None:
     rigs.reset()
-    settings = import_clip(mocap_path(HOPS)).armature.hangtime
+    armature = import_clip(mocap_path(HOPS)).armature
+    settings, recorded = armature.hangtime, current_action(armature)
+    keys = snapshot(recorded, armature)
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
     settings.stances["ground 3"].forward = 0.2
     settings.result.after, settings.result.use_return_frame = "RETURN", True
@@ -33,3 +37,4 @@ def test_it_is_back_by_a_frame_after_those_that_are_adapted() -> None:
     with pytest.raises(RuntimeError, match="is to be back by frame 450, but is adapted until"):
         bpy.ops.hangtime.adapt()
     assert settings.adapted == first
+    assert snapshot(recorded, armature) == keys

@@ -10,17 +10,8 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import current_action
 from hangtime.bridge.takes.takes import derive, keep_edit, start_from_result, takes_of
-from hangtime.tests.blender.helpers import rigs
 
 pytestmark = pytest.mark.usefixtures("_enabled")
-
-
-@pytest.fixture
-def armature() -> bpy.types.Object:
-    rigs.reset()
-    made = rigs.make_armature()
-    rigs.animate(made)
-    return made
 
 
 def result_for(armature: bpy.types.Object) -> bpy.types.Action:
