@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 
 from ...solver.data.reports.constraints import ConstraintReport
 from ...solver.data.reports.report import Report
-from ...solver.data.scene import CLEARANCE
+from ...solver.data.scene import CLEARANCE, SceneObject
 from ..properties.of_actions.shown_overlaps import IN
 from ..properties.settings import HangtimeSettings
 from ..rows.choices import Met
@@ -20,12 +20,15 @@ def write_surface_status(
     report: Report,
     remarks: Mapping[str, str],
     stale: Collection[str] = (),
+    scene: Collection[SceneObject] = (),
 ) -> None:
     """Sets every row's `met` and `status`. remarks: what else there is to say, by object. stale:
-    objects that are others by now, so that it is not known what is in them."""
+    objects that are others by now, so that it is not known what is in them. scene: what was
+    solved among."""
     for row in settings.surfaces:
         names = {each.name_full for each in objects_of(row)}
-        called, deepest = {*names, row.called}, _deepest(report, names)
+        parts = {each.name for each in scene if each.whole in names}
+        called, deepest = {*names, row.called}, _deepest(report, names | parts)
         met, status = Met.UNKNOWN, ""
         if deepest is not None:
             met, status = Met.MISSED, _in_the_way(deepest)

@@ -14,7 +14,7 @@ from ...solver.arrays import FloatArray
 from ...solver.data.faults import SceneFault
 from .members import Member
 from .mesh import Triangles, read_triangles
-from .read import seen_at
+from .seen import seen_at
 
 STEEP = 0.3  # of a face's unit normal along the vertical; below, nobody stands on it
 ABOVE = 1.0  # by how much rays begin above the highest vertex

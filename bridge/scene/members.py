@@ -12,15 +12,18 @@ from ...solver.data.scene import SceneRole
 from ..properties.settings import HangtimeSettings
 from ..properties.surface import SOLID_TYPES, HangtimeSurface
 from ..rows.choices import SurfaceRole
+from .bone_parts import bending_armature
 
 
 @dataclass(frozen=True)
 class Member:
-    """A solid object, by the row that names it first. clearance: Blender units, of a hurdle."""
+    """A solid object, by the row that names it first. clearance: Blender units, of a hurdle.
+    bent_by: another armature than the performer's, whose bones an obstacle is made of."""
 
     object: bpy.types.Object
     role: SceneRole
     clearance: float | None = None
+    bent_by: bpy.types.Object | None = None
 
     @property
     def name(self) -> str:
@@ -50,8 +53,11 @@ def present_members(settings: HangtimeSettings, scene: bpy.types.Scene) -> tuple
 
 
 def _member(thing: bpy.types.Object, row: HangtimeSurface) -> Member:
-    role = SurfaceRole[row.role]
-    return Member(thing, role.solid, row.clearance if role is SurfaceRole.CLEAR else None)
+    role, bent_by = SurfaceRole[row.role], bending_armature(thing)
+    if role is SurfaceRole.CLEAR:
+        return Member(thing, role.solid, row.clearance)
+    bends = role.solid is SceneRole.OBSTACLE and bent_by != row.id_data
+    return Member(thing, role.solid, bent_by=bent_by if bends else None)
 
 
 def ground_members(settings: HangtimeSettings, scene: bpy.types.Scene) -> tuple[Member, ...]:

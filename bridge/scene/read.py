@@ -6,11 +6,10 @@ between them as the artist had it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
-from typing import TypeVar
 
 import bpy
 import numpy as np
@@ -19,21 +18,22 @@ from ...solver.arrays import FloatArray
 from ...solver.data.scene import SceneObject
 from ..accessors import current_scene
 from ..armature.incremental import Incremental, in_slices
-from ..armature.poses import evaluated, metres_per_unit
+from ..armature.poses import metres_per_unit
+from .bone_parts import BonePart, read_bone_parts
 from .members import Member
 from .mesh import Triangles, read_triangles
 from .movable import may_deform, may_move
 from .rigid import rigid_movement
+from .seen import Showing, seen_at
 
 _NEAR = 1e-5  # m and of rotations' entries; less is the same place
-T = TypeVar("T")
-Showing = Callable[[], AbstractContextManager[object]]
 
 
 @dataclass(frozen=True)
 class SceneReading:
-    """objects: as the solver takes them. reshaped: names of those whose shape changes while the
-    frames pass; they have that of the first frame throughout."""
+    """objects: as the solver takes them; what another armature bends is one for each part.
+    reshaped: names of those whose shape changes otherwise while the frames pass; they have that of
+    the first frame throughout."""
 
     objects: tuple[SceneObject, ...] = ()
     reshaped: tuple[str, ...] = ()
@@ -53,23 +53,39 @@ def read_scene(
     shapes = first[0][0]
     matrices = yield from _matrices(objects, frames, showing)
     changed = yield from _reshaped(objects, shapes, frames, showing)
-    records = []
+    records: list[SceneObject] = []
     for member, shape, way in zip(of, shapes, matrices, strict=True):
-        record, stretches = _record(member, shape, way, frames)
-        records.append(record)
-        if stretches:
+        parts = yield from _parts(member, changed, frames, showing)
+        found = (
+            [_record(member, shape, way, frames)]
+            if not parts
+            else [_record(member, part.shape, part.matrices, frames, part.bone) for part in parts]
+        )
+        changed -= {member.object} if parts else set()
+        records += [record for record, _ in found]
+        if any(stretches for _, stretches in found):
             changed.add(member.object)
     return SceneReading(tuple(records), tuple(m.name for m in of if m.object in changed))
+
+
+def _parts(
+    member: Member, changed: set[bpy.types.Object], frames: FloatArray, showing: Showing
+) -> Incremental[tuple[BonePart, ...]]:
+    """The stiff parts of what changes its shape as another armature's bones move."""
+    if member.bent_by is None or member.object not in changed:
+        return ()
+    return (yield from read_bone_parts(member.object, member.bent_by, frames, showing))
 
 
 def changed_objects(before: SceneReading, now: SceneReading) -> tuple[str, ...]:
     """Names of objects that are no longer what they were, have come or have gone."""
     old, new = ({each.name: each for each in read.objects} for read in (before, now))
-    return tuple(
-        name
+    changed = (
+        (new.get(name) or old[name]).whole
         for name in dict.fromkeys((*old, *new))
         if name not in old or name not in new or not _same(old[name], new[name])
     )
+    return tuple(dict.fromkeys(changed))
 
 
 def _same(one: SceneObject, other: SceneObject) -> bool:
@@ -85,20 +101,22 @@ def _same(one: SceneObject, other: SceneObject) -> bool:
 
 
 def _record(
-    member: Member, shape: Triangles, matrices: FloatArray, frames: FloatArray
+    member: Member, shape: Triangles, matrices: FloatArray, frames: FloatArray, bone: str = ""
 ) -> tuple[SceneObject, bool]:
-    """An object's record, and whether its scale changes."""
+    """A record of an object, or of the part of it that a bone carries, and whether its scale
+    changes."""
     metres = metres_per_unit(current_scene())
     movement = rigid_movement(matrices, metres)
     inside_out = np.linalg.det(movement.baked) < 0.0
     record = SceneObject(
-        member.name,
+        f"{member.name}, {bone}" if bone else member.name,
         member.role,
         vertices=metres * shape.vertices @ movement.baked.T,
         triangles=shape.corners[:, ::-1].copy() if inside_out else shape.corners,
         frames=frames if movement.moves else frames[:1],
         positions=movement.positions,
         rotations=movement.rotations,
+        part_of=member.name if bone else "",
     )
     return record, movement.stretches
 
@@ -146,22 +164,3 @@ def _worlds(objects: Sequence[bpy.types.Object], frames: FloatArray) -> FloatArr
 def _shapes(objects: Sequence[bpy.types.Object], frames: FloatArray) -> list[list[Triangles]]:
     """Shapes of objects, by frame."""
     return seen_at(objects, frames, read_triangles)
-
-
-def seen_at(
-    objects: Sequence[bpy.types.Object],
-    frames: FloatArray,
-    look: Callable[[bpy.types.Object], T],
-) -> list[list[T]]:
-    """What `look` finds of each object, as the dependency graph has it at frames (T,).
-
-    The scene's frame, and what is hidden, are afterwards what they were.
-    """
-    scene, found = current_scene(), []
-    with evaluated(objects):
-        for frame in frames:
-            whole = int(np.floor(frame))
-            scene.frame_set(whole, subframe=frame - whole)
-            graph = bpy.context.evaluated_depsgraph_get()
-            found.append([look(each.evaluated_get(graph)) for each in objects])
-    return found

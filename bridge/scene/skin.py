@@ -22,7 +22,8 @@ from ..accessors import armature_data, current_scene
 from ..armature.incremental import Incremental, in_slices
 from ..armature.poses import metres_per_unit
 from .mesh import triangles_of
-from .read import Showing, seen_at
+from .seen import Showing, seen_at
+from .weights import heaviest_bones
 
 POINTS = 20_000  # on all meshes together: a toe still has some sixty
 # Steps of an evenly spread sequence in the plane (Roberts 2018, from the plastic number).
@@ -134,7 +135,7 @@ def _look(bones: Sequence[str], evaluated: bpy.types.Object) -> _Bound | Unusabl
         chosen, shares = _spread(areas)
         points = np.einsum("nc,nci->ni", shares, triangles[chosen])
         nearest = corners[chosen, np.argmax(shares, axis=1)]
-        return _Bound(points, _owners(mesh, nearest, bone_of), float(areas.sum()))
+        return _Bound(points, heaviest_bones(mesh, nearest, bone_of), float(areas.sum()))
     except NoFaces:
         return Unusable.NO_FACES
     except TooManyFaces:
@@ -153,15 +154,3 @@ def _spread(areas: FloatArray) -> tuple[IntArray, FloatArray]:
     beyond = u + v > 1.0
     u, v = np.where(beyond, 1.0 - u, u), np.where(beyond, 1.0 - v, v)
     return chosen, np.stack([1.0 - u - v, u, v], axis=1)
-
-
-def _owners(mesh: bpy.types.Mesh, vertices: IntArray, bone_of: Sequence[int]) -> IntArray:
-    """(N,) the bone of the most weight at vertices (N,); -1 where none has any."""
-    every, places = np.unique(vertices, return_inverse=True)
-    owners = np.full(len(every), -1)
-    for i, vertex in enumerate(every.tolist()):
-        most = 0.0
-        for group in mesh.vertices[vertex].groups:
-            if group.weight > most and bone_of[group.group] >= 0:
-                most, owners[i] = group.weight, bone_of[group.group]
-    return owners[places]

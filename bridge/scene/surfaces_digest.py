@@ -11,6 +11,7 @@ import numpy as np
 from ..action_slots import all_curves
 from ..armature.keys_digest import keys_digest
 from ..properties.settings import HangtimeSettings
+from .bone_parts import bending_armature
 from .members import objects_of
 
 _PLACED_BY = (
@@ -60,7 +61,7 @@ def _movers(thing: bpy.types.Object) -> list[bpy.types.Object]:
     found = [thing]
     for each in found:  # which grows
         targets = (getattr(constraint, "target", None) for constraint in each.constraints)
-        more = dict.fromkeys((each.parent, *targets))
+        more = dict.fromkeys((each.parent, bending_armature(each), *targets))
         found += [other for other in more if other is not None and other not in found]
     return found
 

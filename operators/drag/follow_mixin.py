@@ -195,7 +195,7 @@ class FollowedDrag(PolledOperator):
         if asked is None or asked.uid != self._armature.session_uid:
             return None
         there = {(m.name, m.role) for m in present_members(settings, present(context.scene))}
-        same = {(thing.name, thing.role) for thing in asked.scene.objects} == there
+        same = {(thing.whole, thing.role) for thing in asked.scene.objects} == there
         return asked if same and analysis_is_of(settings, asked.recording) else None
 
     def _hear(self, message: Progress | Answer) -> None:

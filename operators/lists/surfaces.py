@@ -1,5 +1,7 @@
 """The list of surfaces: add what is selected, or a collection; remove; select what a row names."""
 
+from collections.abc import Iterable
+
 import bpy
 
 from ...bridge.accessors import present
@@ -7,6 +9,7 @@ from ...bridge.properties.settings import HangtimeSettings, scene_settings, sett
 from ...bridge.properties.surface import SOLID_TYPES, HangtimeSurface
 from ...bridge.rows.choices import SurfaceRole
 from ...bridge.scene.members import ground_members, is_gone, objects_of
+from ...bridge.scene.skin import skinned_meshes
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import required_armature
@@ -53,7 +56,7 @@ class AddSurfacesOperator(AddingOperator, bpy.types.Operator):
             row = row_of(settings, collection)
             row.collection, row.name, row.role = collection, collection.name, self.role
             return {"FINISHED"}
-        chosen = [o for o in context.selected_objects if o.type in SOLID_TYPES]
+        chosen = _with_faces(context.selected_objects, but=present(settings.id_data))
         if not chosen:
             return self.refuse(NOTHING_SOLID, "WARNING")
         for each in chosen:
@@ -105,6 +108,19 @@ class SelectSurfaceOperator(RowOperator, bpy.types.Operator):
         # The choice in the sidebar outlives that another object is active now.
         scene_settings(context.scene).armature = armature
         return {"FINISHED"}
+
+
+def _with_faces(
+    selected: Iterable[bpy.types.Object], but: bpy.types.ID
+) -> tuple[bpy.types.Object, ...]:
+    """What of a selection is solid, and the meshes that its armatures bend, `but` one's."""
+    found = dict[bpy.types.Object, None]()
+    for each in selected:
+        if each.type in SOLID_TYPES:
+            found[each] = None
+        elif each.type == "ARMATURE" and each != but:
+            found |= dict.fromkeys(skinned_meshes(each))
+    return tuple(found)
 
 
 def row_of(

@@ -55,5 +55,5 @@ def note_surfaces(
     first = float(asked.recording.frames[0])
     for name in asked.scene.reshaped:
         lines.setdefault(name, RESHAPED.format(name, first))
-    write_surface_status(settings, report, lines, stale)
+    write_surface_status(settings, report, lines, stale, asked.scene.objects)
     return list(lines.values())

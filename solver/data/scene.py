@@ -58,7 +58,8 @@ class SceneObject:
     triangles: (F, 3) indices, counter-clockwise seen from outside. frames: (T,) scene frames,
     ascending, at which positions (T, 3) m and rotations (T, 3, 3), object to world, are known; one
     frame of an object that stands still. steady: how it, or its surface, moves beside, from the
-    result's first instant on. Two are equal whose values are.
+    result's first instant on. part_of: the artist's object of which it is a stiff part; "" for a
+    whole one. Two are equal whose values are.
     """
 
     name: str
@@ -69,6 +70,12 @@ class SceneObject:
     positions: FloatArray
     rotations: FloatArray
     steady: SteadyMotion | None = None
+    part_of: str = ""
+
+    @property
+    def whole(self) -> str:
+        """Name of the artist's object that it is, or is a part of."""
+        return self.part_of or self.name
 
     @property
     def moves(self) -> bool:
@@ -78,12 +85,16 @@ class SceneObject:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, SceneObject):
             return NotImplemented
-        named = (self.name, self.role, self.steady) == (other.name, other.role, other.steady)
         pairs = zip(self._arrays, other._arrays, strict=True)
-        return self is other or (named and all(np.array_equal(one, two) for one, two in pairs))
+        same = self._called == other._called
+        return self is other or (same and all(np.array_equal(one, two) for one, two in pairs))
 
     def __hash__(self) -> int:
         return hash((self.name, self.role, *(array.shape for array in self._arrays)))
+
+    @property
+    def _called(self) -> tuple[str, SceneRole, SteadyMotion | None, str]:
+        return self.name, self.role, self.steady, self.part_of
 
     @property
     def _arrays(self) -> tuple[FloatArray | IntArray, ...]:

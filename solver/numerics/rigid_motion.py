@@ -75,6 +75,12 @@ class SampledPoses:
         """(T, 3) angular velocities in the samples' own axes."""
         return self._slopes(self._turns)
 
+    @cached_property
+    def _arrivals(self) -> FloatArray:
+        """(T - 1, 3) rates of the rotation vectors from sample to sample, at the second."""
+        spins = self._spins[1:, :, None]
+        return np.asarray(np.linalg.solve(_right_jacobian(self._turns), spins)[..., 0])
+
     def _slopes(self, steps: FloatArray) -> FloatArray:
         """(T, 3) slopes at the samples, from the steps (T - 1, 3) between them."""
         length = np.diff(self.times)[:, None]
@@ -110,8 +116,8 @@ class SampledPoses:
         """The sample before each instant (U,), rotation vectors (U, 3) from there, and their
         derivatives."""
         i, share, length = self._spans(times)
-        last = np.linalg.solve(_right_jacobian(self._turns[i]), self._spins[i + 1][..., None])
-        return i, *_hermite(self._turns[i], (self._spins[i], last[..., 0]), share, length)
+        ends = self._spins[i], self._arrivals[i]
+        return i, *_hermite(self._turns[i], ends, share, length)
 
     def _spans(self, times: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
         """The sample (U,) before each instant, the share (U, 1) of the way to the next, and the

@@ -38,7 +38,10 @@ class ObjectMotion:
 
     def at(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Positions (N, 3) m and rotations (N, 3, 3) of the mesh at instants (N,) s."""
-        poses = self._moved(times, self._keyed(times))[0]
+        if self.thing.steady is None:
+            poses = self._poses(times)
+        else:
+            poses = self._moved(times, self._keyed(times))[0]
         return poses.shift, poses.turn
 
     def still_at(self, time: float) -> SceneObject:
@@ -68,13 +71,18 @@ class ObjectMotion:
         seconds = (each.frames - self.first_frame) / self.rate
         return SampledPoses(seconds, each.positions, each.rotations)
 
-    def _keyed(self, times: FloatArray) -> tuple[Poses, Poses]:
-        """Poses as keyed, and their rates."""
+    def _poses(self, times: FloatArray) -> Poses:
+        """Poses as keyed."""
         if self._samples is not None:
-            return self._samples.poses(times), self._samples.rates(times)
+            return self._samples.poses(times)
         count, each = len(times), self.thing
         turn = np.tile(each.rotations[0], (count, 1, 1))
-        return Poses(turn, np.tile(each.positions[0], (count, 1))), Poses.resting(count)
+        return Poses(turn, np.tile(each.positions[0], (count, 1)))
+
+    def _keyed(self, times: FloatArray) -> tuple[Poses, Poses]:
+        """Poses as keyed, and their rates."""
+        rates = Poses.resting(len(times)) if self._samples is None else self._samples.rates(times)
+        return self._poses(times), rates
 
     def _on_belt(self, times: FloatArray) -> tuple[Poses, Poses]:
         at, rate = self._keyed(times)

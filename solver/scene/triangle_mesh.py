@@ -20,7 +20,7 @@ MERGED = 1e-6  # m, within which vertices are one
 LEAST_AREA = 1e-12  # m², twice that of a triangle that has a normal
 ON_FACE = 1e-6  # m, nearer than which a point has the face's normal
 SHEET = 0.3  # m, how deep behind a mesh with holes is in it
-REMEMBERED = 16  # meshes, whose trees are kept
+REMEMBERED = 64  # meshes, whose trees are kept; a character has some twenty
 
 
 @dataclass(frozen=True)

@@ -32,9 +32,15 @@ from hangtime.solver.scene.checks import check_scene
 from hangtime.solver.scene.triangle_mesh import placed_mesh
 from hangtime.tests.blender.helpers.actions import curves_of
 from hangtime.tests.blender.helpers.rows import make_rig
+from hangtime.tests.blender.helpers.skins import make_skin
 from hangtime.tests.blender.helpers.solids import add_row, make_box, read
+from mathutils.bvhtree import BVHTree
 
 FIRST, LAST = 1.0, 24.0
+
+ARM = ("RightArm", "RightForeArm", "RightHand", "LeftArm", "LeftForeArm", "LeftHand")
+BESIDE = 0.8  # m, of two who jump side by side
+HARD = 0.03  # m, of an arm's radius at least
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 
@@ -55,6 +61,22 @@ def select(*solids: bpy.types.Object) -> None:
     bpy.ops.object.select_all(action="DESELECT")
     for each in solids:
         each.select_set(True)
+
+
+def apart(performer: bpy.types.Object, skin: bpy.types.Object) -> float:
+    """m, from the middles of the performer's arms to a partner's skin, at its least."""
+    least = np.inf
+    for frame in range(150, 240, 2):
+        bpy.context.scene.frame_set(frame)
+        graph = bpy.context.evaluated_depsgraph_get()
+        tree = BVHTree.FromObject(skin, graph)
+        posed = performer.evaluated_get(graph)
+        for name in ARM:
+            bone = posed.pose.bones[name]
+            for share in np.linspace(0.0, 1.0, 5):
+                place = posed.matrix_world @ bone.head.lerp(bone.tail, share)
+                least = min(least, tree.find_nearest(skin.matrix_world.inverted() @ place)[3])
+    return least
 
 
 def pins(armature: bpy.types.Object) -> dict[str, str | None]:
@@ -248,6 +270,11 @@ def test_a_row_says_what_stays_in_it(rig: bpy.types.Object, deep: bool) -> None:
         assert (row.met, row.status) == ("MISSED", "In the way: Left foot 12 mm at frame 12")
     else:
         assert (row.met, row.status) == ("MET", "Nothing new is in it")
+    part = replace(read(rig).objects[0], name="Crate, Lid", part_of="Crate")
+    overlap = ConstraintReport("Left foot in Crate, Lid", RowKind.SOLID, 30.0, 12.0, met=False)
+    report = SimpleNamespace(overlaps=[overlap])
+    write_surface_status(rig.hangtime, report, {}, scene=[part])
+    assert (row.met, row.status) == ("MISSED", "In the way: Left foot 30 mm at frame 12")
     row.role = "OBSTACLE"  # another question
     assert (row.met, row.status) == ("UNKNOWN", "")
 
@@ -284,6 +311,28 @@ def test_a_jump_lands_on_a_crate(analysed: bpy.types.Object) -> None:
     traces = kept(settings.adapted).traces
     np.testing.assert_allclose(traces.points[-1, :, 2], 0.2, atol=1e-3)
     assert settings.status.startswith("Solved in")
+
+
+@pytest.mark.slow
+def test_arms_keep_out_of_a_partner_who_jumps_beside(analysed: bpy.types.Object) -> None:
+    """Both perform the same jump; arms that swing out are in each other."""
+    partner = analysed.copy()
+    partner.data = analysed.data.copy()
+    bpy.context.scene.collection.objects.link(partner)
+    (start, end) = (
+        np.mean([row.at for row in analysed.hangtime.contacts if row.phase == phase], axis=0)
+        for phase in ("ground 1", "ground 2")
+    )
+    along = (end - start)[:2] / np.linalg.norm((end - start)[:2])
+    skin = make_skin(partner, {**dict.fromkeys(ARM, 0.04), "Spine1": 0.14}, longer=0.1)
+    skin.parent = partner
+    partner.location = (-along[1] * BESIDE, along[0] * BESIDE, 0.0)
+    bpy.context.view_layer.objects.active = analysed
+    row = add_row(analysed, skin, "OBSTACLE")
+    before = apart(analysed, skin)
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    assert (row.met, row.status) == ("MET", KEPT_OUT)
+    assert before < 0.02 < HARD < apart(analysed, skin)
 
 
 # ---------------------------------------------------------------- what nothing in sight carries
