@@ -11,7 +11,7 @@ from hangtime.solver.data.problem import MotionProblem, OffsetAxes, Pin
 from hangtime.solver.data.requests import BodyChange, Requests
 from hangtime.solver.data.solver_options import HumanRanges, SolverOptions
 from hangtime.solver.data.status import Status
-from hangtime.solver.fitting.fit import fit
+from hangtime.solver.fitting.fit import Fit, fit
 from hangtime.solver.optimisation.sqp import Step
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.solver.transcription.motion import dynamics_residual
@@ -37,6 +37,13 @@ def adapted(*pins: Pin) -> Adaptation:
 @cache
 def edited(name: str) -> Adaptation:
     return adapted(EDITS[name])
+
+
+@cache
+def whole_fit(relative: str) -> Fit:
+    """Of a whole recording."""
+    analysis = analyse(load_recording(relative), MotionProblem())
+    return fit(analysis.performance, analysis.schedule)
 
 
 def landed() -> np.ndarray:
@@ -209,9 +216,7 @@ def test_adapting_leaves_the_fit_alone() -> None:
     ],
 )
 def test_other_recordings_adapt(relative: str, name: str) -> None:
-    analysis = analyse(load_recording(relative), MotionProblem())
-    fitted = fit(analysis.performance, analysis.schedule)
-    adaptation = adapt(fitted, MotionProblem(pins=(EDITS[name],)))
+    adaptation = adapt(whole_fit(relative), MotionProblem(pins=(EDITS[name],)))
     assert adaptation.outcome.status is Status.SOLVED
     assert_valid(adaptation.motion, adaptation.setup.schedule)
 
