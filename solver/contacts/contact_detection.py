@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 
@@ -22,19 +21,16 @@ from ..scene.carrier import Carrier
 from ..scene.support import Heights, level
 from ..unseen.free_fall import is_free_fall, off_gravity, unseen_support
 from .force_timing import timed_by_forces
-from .point_movement import STEP, PointMovement, even_clock, point_movement
+from .noisy_touches import joined_over_noise
+from .point_movement import MAX_SLIDE, STEP, PointMovement, even_clock, point_movement
 
 MIN_SEPARATION = 0.03  # s; between two contacts of one point
-MAX_SLIDE = 0.06  # m; a point that slides further makes a new contact
 CREEP_WINDOW = 0.4  # s; of the running median of a resting point's place
 REACH = 100  # instants on each side of a rest in which a point mostly leaves its place
 SINK_WINDOW = 0.2  # s; of the running low of its height, when it lands
 MIN_PIECE = 0.03  # s, of a contact that a cut leaves; a foot takes as long to land or leave
 MAX_DELAY = 0.1  # s, by which noise delays a contact of who stands; a hop of 1 cm flies as long
 LEAST_FALL = 0.25  # m/s; a flight of 0.05 s ends, and begins, so fast; standing bodies are slower
-MAX_BREAK = 0.12  # s; a foot cannot leave its place and come back in less
-BREAK_WINDOW = 0.2  # s, on either side of a break, over which a place is the mean
-FARTHER = 1.5  # times what feet move by alike, as the turns of each leg are noisy, too
 
 
 def detect_contacts(
@@ -68,7 +64,7 @@ def detect_contacts(
         for touch in _touches(clock, name, point, movements[name], ground or level(floor_m))
     ]
     feet = {name: movements[name] for name, p in points.items() if p.kind is not PointKind.HAND}
-    touches = _joined_over_noise(clock, touches, feet, ground or level(floor_m))
+    touches = joined_over_noise(clock, touches, feet, ground or level(floor_m))
     for carrier in carriers:
         touches += _carried(times, clock, points, carrier)
     touches = _on_one_thing(touches) if carriers else touches
@@ -107,82 +103,6 @@ def _touches(
             yield Contact(
                 name, name, point.bone, point.offset, candidate.start, candidate.end, place
             )
-
-
-@dataclass(frozen=True)
-class _Break:
-    """Of the contact of a foot that stays low. after: the touch that goes on. moved: (2,) m, level,
-    of its point meanwhile. alike: whether the other foot stays low, too, and moves with it."""
-
-    after: Contact
-    moved: FloatArray
-    alike: bool
-
-
-def _joined_over_noise(
-    clock: FloatArray,
-    touches: Sequence[Contact],
-    feet: Mapping[str, PointMovement],
-    ground: Heights,
-) -> list[Contact]:
-    """The touches, those of a foot's point that noise parts as one. clock: (N,) s, of the feet.
-
-    Video capture errs in the body's place by centimetres, to and fro within tenths of a second, and
-    feet that stand seem to step. But they move alike then, which feet that step do not, and once
-    the other way, which feet that slide do not. So far, noise may have moved one that stands alone.
-    """
-    breaks = list(_breaks(clock, touches, feet, ground))
-    shifts = np.array([b.moved for b in breaks if b.alike]).reshape(-1, 2)
-    if not (shifts @ shifts.T < 0.0).any():
-        return list(touches)
-    farthest = np.linalg.norm(shifts, axis=1).max()
-    parted = {id(b.after) for b in breaks if np.linalg.norm(b.moved) <= FARTHER * farthest}
-    joined: list[Contact] = []
-    for touch in sorted(touches, key=lambda t: (t.point, t.start)):
-        if id(touch) not in parted:
-            joined.append(touch)
-            continue
-        before = joined[-1]
-        end = max(before.end, touch.end)
-        during = (clock >= before.start) & (clock <= end)
-        place = np.median(feet[touch.point].point[during], axis=0)
-        joined[-1] = replace(before, end=end, place=place)
-    return joined
-
-
-def _breaks(
-    clock: FloatArray,
-    touches: Iterable[Contact],
-    feet: Mapping[str, PointMovement],
-    ground: Heights,
-) -> Iterable[_Break]:
-    """Where a foot's point touches again sooner than a foot can, and its foot stays low."""
-    for one, other in pairwise(sorted(touches, key=lambda t: (t.point, t.start))):
-        if one.point != other.point or other.start - one.end >= MAX_BREAK or one.point not in feet:
-            continue
-        before = (clock > one.end - BREAK_WINDOW) & (clock <= one.end)
-        after = (clock >= other.start) & (clock < other.start + BREAK_WINDOW)
-        moved = {
-            name: (foot.track[after].mean(axis=0) - foot.track[before].mean(axis=0))[:2]
-            for name, foot in feet.items()
-        }
-        side = one.point.split()[0]
-        own = [name for name in feet if name.split()[0] == side]
-        across = [name for name in feet if name not in own]
-        near = (np.linalg.norm(moved[name] - moved[one.point]) for name in across)
-        between = (clock >= min(one.end, other.start)) & (clock <= max(one.end, other.start))
-        if _low([feet[name] for name in own], clock, between, ground):
-            alike = bool(min(near, default=np.inf) < MAX_SLIDE)
-            beside = _low([feet[name] for name in across], clock, before | between | after, ground)
-            yield _Break(other, moved[one.point], alike and beside)
-
-
-def _low(
-    foot: Iterable[PointMovement], clock: FloatArray, during: BoolArray, ground: Heights
-) -> bool:
-    """Whether some point of a foot is as low as a toe that touches, at each of some instants."""
-    heights = [f.track[during, 2] - ground(clock, f.track)[during] for f in foot]
-    return bool(heights) and bool((np.min(heights, axis=0) < PointKind.TOE.value.max_height).all())
 
 
 def _carried(

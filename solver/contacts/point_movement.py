@@ -9,6 +9,7 @@ from ..data.contacts import ContactPoint
 from ..numerics.interpolation import interpolate
 
 STEP = 0.005  # s; tracks are looked at so finely
+MAX_SLIDE = 0.06  # m; a point that slides further makes a new contact
 SMOOTHING = 0.01  # s; half of the time over which a speed is taken
 HALF = round(SMOOTHING / STEP)
 

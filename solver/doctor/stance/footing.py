@@ -11,7 +11,7 @@ import numpy as np
 from ...analysis.analyse import skids_in
 from ...analysis.performance import Performance, contact_points, find_contacts
 from ...arrays import FloatArray
-from ...contacts.contact_detection import MAX_BREAK
+from ...contacts.noisy_touches import MAX_BREAK
 from ...data.contacts import ContactSchedule, Interval, PointKind
 from ...data.recording import Recording
 from ...scene.support import boxes_beneath
