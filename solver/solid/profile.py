@@ -18,7 +18,7 @@ FINEST = 0.01  # m, between nodes
 MOST_NODES = 128  # along an axis
 DENSITY = 2  # points on a triangle for each node along its longest side
 TOGETHER = 1_000_000  # points at once
-REMEMBERED = 256  # of an object some ten radii along fourteen ways
+REMEMBERED = 2048  # of an object some ten radii along fourteen ways; a character is fifteen
 
 
 @dataclass(frozen=True)
