@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from ...solver.arrays import FloatArray
+from ...solver.data.faults import TimeStretched
 from ..accessors import armature_data, current_scene, pose_of
 from ..action_slots import all_curves
 
@@ -41,6 +42,13 @@ def frames_per_second(scene: bpy.types.Scene) -> float:
     return scene.render.fps / scene.render.fps_base
 
 
+def require_unstretched(scene: bpy.types.Scene) -> None:
+    """Raises TimeStretched where a scene's frame shows the keys of another one."""
+    old, new = scene.render.frame_map_old, scene.render.frame_map_new
+    if old != new:
+        raise TimeStretched(old, new)
+
+
 def set_frame_rate(scene: bpy.types.Scene, rate: float) -> None:
     """Has a scene play so many frames a second, by the nearest whole number and a base near 1."""
     scene.render.fps = max(1, round(rate))
@@ -59,7 +67,8 @@ def followed_bone(armature: bpy.types.Object, name: str) -> str:
 def sample(armature: bpy.types.Object, frames: FloatArray) -> Poses:
     """Evaluate `armature`, constraints and drivers included, at each of `frames` (T,).
 
-    The scene's frame, and whether the armature is seen, are afterwards what they were.
+    The scene's frame, and whether the armature is seen, are afterwards what they were. Raises
+    TimeStretched.
     """
     scene = current_scene()
     bones = _parents_first(armature)
@@ -86,9 +95,10 @@ def evaluated(objects: Iterable[bpy.types.Object]) -> Iterator[None]:
     """Context in which Blender evaluates objects, and the poses of armatures.
 
     It skips what is hidden, excluded or at rest, also where keys or drivers hide it. On exit these
-    and the scene's frame are what they were.
+    and the scene's frame are what they were. Raises TimeStretched.
     """
     scene = current_scene()
+    require_unstretched(scene)
     with ExitStack() as undo:
         undo.callback(scene.frame_set, scene.frame_current, subframe=scene.frame_subframe)
         for thing in objects:

@@ -6,11 +6,12 @@ import bpy
 
 from ...bridge.accessors import present
 from ...bridge.armature.incremental import Incremental
+from ...bridge.armature.poses import require_unstretched
 from ...bridge.constraints.motion_problem import analysis_is_of
 from ...bridge.properties.settings import settings_of
 from ...bridge.scene.members import present_members
 from ...bridge.worker_client import shared
-from ...solver.data.faults import Fault
+from ...solver.data.faults import Fault, TimeStretched
 from ...solver.data.status import DragStatus
 from ...solver.worker.protocol import Answer, Failed, Followed, Progress
 from ..names import OperatorId
@@ -83,6 +84,10 @@ class FollowedDrag(PolledOperator):
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         self._armature = required_armature(context)
         self._press = Press.of(context, event, click=self.release_confirm)
+        try:
+            require_unstretched(present(context.scene))
+        except TimeStretched as fault:
+            return self.refuse(said(fault))
         why = ELSEWHERE if context.region_data is None else self.take(context)
         if why is not None:
             return self.refuse(why)

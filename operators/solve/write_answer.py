@@ -9,7 +9,7 @@ import bpy
 from ...bridge.accessors import current_scene, present, source_of
 from ...bridge.armature.actions import read_recorded_incrementally, recorded_action
 from ...bridge.armature.incremental import Incremental, complete
-from ...bridge.armature.poses import frames_per_second
+from ...bridge.armature.poses import frames_per_second, require_unstretched
 from ...bridge.armature.strips import layers_above
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
@@ -333,7 +333,8 @@ def _note(
 
 def _unchanged(asked: Asked) -> Incremental[bpy.types.Object]:
     """The armature, if it and its recording are what they were. Raises RateChanged,
-    ChangedMeanwhile."""
+    ChangedMeanwhile, TimeStretched."""
+    require_unstretched(current_scene())
     before, rate = asked.recording.rate, frames_per_second(current_scene())
     if not isclose(before, rate, rel_tol=SAME_RATE):
         raise RateChanged(before, rate, while_solving=True)

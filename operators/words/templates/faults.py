@@ -293,6 +293,9 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
         "{now:.5g} frames a second while it was solved; set it back to {before:.5g} (Output > "
         "Format > Frame Rate) and try again, or press Analyze.",
     ),
+    faults.TimeStretched: "The scene shows the keys of frame {old} at its frame {new} (Output > "
+    "Frame Range > Time Stretching), so neither their frames nor their speeds are those that are "
+    "seen; make Old and New the same while you adapt and export.",
     faults.LostEdits: "What you changed about {contacts:names} is gone, for an analysis finds no "
     "such contact any more; look through the contacts, and move them again.",
     faults.SpanChanged: "Nothing was done, because frames {now[0]:g} to {now[1]:g} are to be "

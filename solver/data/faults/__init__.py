@@ -40,6 +40,7 @@ from .recordings import RateChanged as RateChanged
 from .recordings import ScaledStrip as ScaledStrip
 from .recordings import SpanChanged as SpanChanged
 from .recordings import TextCure as TextCure
+from .recordings import TimeStretched as TimeStretched
 from .recordings import Treadmill as Treadmill
 from .recordings import UnknownClipFormat as UnknownClipFormat
 from .recordings import UnknownContactName as UnknownContactName

@@ -334,6 +334,15 @@ class RateChanged(Fault):
 
 
 @dataclass
+class TimeStretched(Fault):
+    """The scene shows its frames at other times than they are keyed: `new` of them are shown for
+    each `old` (Blender's Time Stretching)."""
+
+    old: int
+    new: int
+
+
+@dataclass
 class LostEdits(Fault):
     """Contacts that the artist had changed are not found any more, by their names before."""
 
