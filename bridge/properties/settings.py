@@ -348,7 +348,8 @@ class HangtimeAction(bpy.types.PropertyGroup):
     next_edit: of a take from which nothing is made yet. asked_key, take_key, own_key: digests of
     the settings, of the take's keys and of its own when it was made. asked_targets: the data-blocks
     that the settings pointed to then. surfaces_key: digest of the surfaces then; empty where an
-    earlier version kept none. spans: the frames of all adaptations that it holds.
+    earlier version kept none. conditions: what else its physics depended on then
+    (`Conditions`, as text), likewise. spans: the frames of all adaptations that it holds.
     """
 
     called: declared(text("Name", get=_get_called, set=_set_called), options=HIDDEN)
@@ -363,6 +364,7 @@ class HangtimeAction(bpy.types.PropertyGroup):
     asked_key: declared(text(), options=HIDDEN)
     asked_targets: bpy.props.CollectionProperty(type=HangtimeAskedFor, options=HIDDEN)
     surfaces_key: declared(text(), options=HIDDEN)
+    conditions: declared(text(), options=HIDDEN)
     take_key: declared(text(), options=HIDDEN)
     own_key: declared(text(), options=HIDDEN)
     spans: declared(text(), options=HIDDEN)

@@ -1,15 +1,21 @@
-"""Whether surfaces are what they were when a result was made among them."""
+"""Whether what a result was made among is what it was: surfaces, the scene's clock and lengths, and
+the armature's place."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from math import isclose
 from zlib import crc32
 
 import bpy
 import numpy as np
 
+from ..accessors import current_scene
 from ..action_slots import all_curves
 from ..armature.keys_digest import keys_digest
+from ..armature.poses import frames_per_second, metres_per_unit
 from ..properties.settings import HangtimeSettings
 from .bone_parts import bending_armature
 from .members import objects_of
@@ -19,6 +25,60 @@ _PLACED_BY = (
     *("delta_location", "delta_rotation_euler", "delta_rotation_quaternion", "delta_scale"),
 )
 _DIGITS = 5  # Blender units, and of factors; less is the same place
+# Relative, of clocks and sizes. NTSC's rates are 1e-3 from whole ones, and are meant; clips round
+# their frame time by half of that.
+_SAME = 5e-4
+
+OTHER_RATE = "The scene plays {:.5g} frames a second, and this was made for {:.5g}"
+OTHER_SIZE = "The armature is {:.4g} times as large as this was made for, by its scale or the unit"
+ELSEWHERE = "The armature, or what it hangs on, was moved among the surfaces"
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """Of what a result's physics depends on beside keys, settings and surfaces.
+
+    rate: frames a second. metres: of a unit of the armature's own space. place: digest of where the
+    armature stands, and of what it hangs on.
+    """
+
+    rate: float
+    metres: float
+    place: str
+
+    @staticmethod
+    def of(armature: bpy.types.Object) -> Conditions:
+        """What they are now."""
+        scene = current_scene()
+        scale = float(armature.matrix_world.median_scale)
+        return Conditions(
+            frames_per_second(scene), scale * metres_per_unit(scene), _stands(armature)
+        )
+
+    @staticmethod
+    def read(text: str) -> Conditions:
+        """As `as_text` wrote them."""
+        return Conditions(**json.loads(text))
+
+    def as_text(self) -> str:
+        return json.dumps(asdict(self))
+
+    def since(self, before: Conditions, *, among_surfaces: bool) -> str:
+        """In words, what makes a result unphysical that was made in those before; "" for nothing.
+
+        among_surfaces: whether it matters where the armature stands.
+        """
+        if not isclose(self.rate, before.rate, rel_tol=_SAME):
+            return OTHER_RATE.format(self.rate, before.rate)
+        if not isclose(self.metres, before.metres, rel_tol=_SAME):
+            return OTHER_SIZE.format(self.metres / before.metres)
+        return ELSEWHERE if among_surfaces and self.place != before.place else ""
+
+
+def _stands(armature: bpy.types.Object) -> str:
+    """Of an armature's place but for its own keys, which are now of one take, now of another."""
+    others = [_movement(each) for each in _movers(armature) if each != armature]
+    return str(crc32(repr((_movement(armature)[2:], others)).encode()))
 
 
 def surfaces_digest(

@@ -41,7 +41,7 @@ from ..rows.copying import (
     settings_digest,
     settings_targets,
 )
-from ..scene.surfaces_digest import surfaces_digest
+from ..scene.surfaces_digest import Conditions, surfaces_digest
 from .difference import bake_combined, difference_shown
 from .span import ResultSpan
 
@@ -74,11 +74,13 @@ class ListedTake:
 @dataclass(frozen=True)
 class AskedSettings:
     """Settings as they were when a result was asked for, after which the artist may go on changing
-    them. key: their digest. surfaces: that of the surfaces among which they asked for it."""
+    them. key: their digest. surfaces: that of the surfaces among which they asked for it.
+    conditions: as text what else there was."""
 
     held: HeldSettings
     key: str
     surfaces: str
+    conditions: str
 
     @staticmethod
     def of(settings: HangtimeSettings) -> AskedSettings:
@@ -87,7 +89,8 @@ class AskedSettings:
         armature = settings.id_data
         assert isinstance(armature, bpy.types.Object)
         surfaces = surfaces_digest(settings, armature, {})
-        return AskedSettings(held, settings_digest(settings, _NOT_ASKED, off=False), surfaces)
+        key = settings_digest(settings, _NOT_ASKED, off=False)
+        return AskedSettings(held, key, surfaces, Conditions.of(armature).as_text())
 
 
 def root_of(action: bpy.types.Action) -> bpy.types.Action:
@@ -317,6 +320,7 @@ def note_made(
     copy_settings(settings_of(armature), made.edit, _NOT_KEPT)
     put_settings(asked.held, made.edit)
     made.asked_key, made.surfaces_key = asked.key, asked.surfaces
+    made.conditions = asked.conditions
     made.asked_targets.clear()
     for target in settings_targets(made.edit, _NOT_ASKED, off=False):
         made.asked_targets.add().target = target
@@ -361,8 +365,10 @@ def look_again(armature: bpy.types.Object) -> bool:
         if take.source not in sources:
             sources[take.source] = take_digest(armature, take.source)
         edit = settings if take.action == own else kept.edit
-        stale = ""
-        if sources[take.source] != kept.take_key:
+        stale = unphysical_since(armature, take.action)
+        if stale:
+            pass  # of which the changes below may only be what follows
+        elif sources[take.source] != kept.take_key:
             stale = TAKE_CHANGED
         elif not _asks_the_same(edit, kept):
             stale = EDIT_CHANGED
@@ -373,6 +379,16 @@ def look_again(armature: bpy.types.Object) -> bool:
             kept.stale, kept.polished = stale, polished
             new = True
     return new
+
+
+def unphysical_since(armature: bpy.types.Object, result: bpy.types.Action) -> str:
+    """What of the scene or of its armature's place makes a result unphysical, in words; "" for
+    nothing, as for results of earlier versions."""
+    made = action_settings(result)
+    if not made.conditions:
+        return ""
+    before = Conditions.read(str(made.conditions))
+    return Conditions.of(armature).since(before, among_surfaces=bool(made.surfaces_key))
 
 
 def _asks_the_same(edit: HangtimeSettings, kept: HangtimeAction) -> bool:

@@ -11,7 +11,7 @@ from ...bridge.exports.writers import usd_name
 from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.recipe.export import ExportOptions
 from ...bridge.rows.choices import Engine, FileFormat, RootMotion
-from ...bridge.takes.takes import bake_shown, takes_of
+from ...bridge.takes.takes import bake_shown, takes_of, unphysical_since
 from ...solver.data.faults import OutputNotWritable
 from ..names import OperatorId
 from ..operator_types import OperatorResult
@@ -28,6 +28,7 @@ NO_NAME = "no file name is given"
 NOT_ACCEPTED = "Accept a result first; what is exported are accepted results"
 SHOWN_NOT_ACCEPTED = "The result that is shown is not accepted; accept it, or choose All Accepted"
 LEFT_OUT = "; left out, as another armature performs them: {}"
+UNPHYSICAL = "; {}: {}"
 RENAMED = "; USD names have letters and digits alone, so {} bones are called otherwise in it"
 
 ENGINES = (
@@ -131,7 +132,8 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
         path = bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ending)
         export_takes(performer, taken, path, options, _pelvis(armature, performer))
         left_out = [take.name for take in chosen if take not in taken]
-        self._tell(performer, Path(path).name, options, left_out)
+        since = {take.name: unphysical_since(armature, take) for take in taken}
+        self._tell(performer, Path(path).name, options, left_out, since)
         return {"FINISHED"}
 
     def _options(self, path: str = "") -> ExportOptions:
@@ -146,6 +148,7 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
         name: str,
         options: ExportOptions,
         left_out: list[str],
+        unphysical: dict[str, str],
     ) -> None:
         said = f"Exported {name}"
         if left_out:
@@ -153,7 +156,8 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
         if format_of(options) is FileFormat.USD:
             renamed = [b for b in present(performer.pose).bones if usd_name(b.name) != b.name]
             said += RENAMED.format(len(renamed)) if renamed else ""
-        self.report({"INFO"}, said)
+        said += "".join(UNPHYSICAL.format(take, why) for take, why in unphysical.items() if why)
+        self.report({"WARNING"} if any(unphysical.values()) else {"INFO"}, said)
 
 
 def _accepted(armature: bpy.types.Object) -> list[bpy.types.Action]:

@@ -10,7 +10,7 @@ from ...bridge.armature.strips import remove_strips
 from ...bridge.fake_users import unguard
 from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.scene.played_end import play_what_is_left
-from ...bridge.takes.takes import bake_shown, results_from
+from ...bridge.takes.takes import bake_shown, results_from, unphysical_since
 from ...bridge.takes.write_result import remove_slot
 from ...solver.data.faults import NoArmature
 from ..names import OperatorId
@@ -180,7 +180,9 @@ class AcceptOperator(_OfSettledResult, bpy.types.Operator):
         return why or _not_shown(context, "be kept")
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
-        warning = action_settings(required_result(context)).warning
+        result = required_result(context)
+        told = unphysical_since(required_armature(context), result), action_settings(result).warning
+        warning = "\n".join(filter(None, told))
         if not warning or bpy.app.background:
             return self.execute(context)
         return present(context.window_manager).invoke_confirm(

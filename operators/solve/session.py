@@ -59,7 +59,8 @@ class Session:
     """The solve under way, who runs it, why the last one failed, what it was asked, and the best
     motion that it found; the armature (its number) whose body something unseen carries, and boxes
     that would; of which armature, recording and bodies the controls were tried last, and pose
-    them; what the last drag was about, or Analyze has prepared the next one for."""
+    them; what the last drag was about, or Analyze has prepared the next one for; frames a second
+    and metres per unit of the scene that was seen last."""
 
     solving: Solving | None = None
     failure: Failure | None = None
@@ -67,6 +68,7 @@ class Session:
     support: tuple[int, tuple[SupportBox, ...]] | None = None
     tried: tuple[int, str, tuple[str, ...]] | None = None
     dragged: Asked | None = None
+    units: tuple[float, float] | None = None
     running: list[Running] = field(default_factory=list)
 
     def best_of(self, armature: bpy.types.Object | None) -> tuple[Asked, Adapted] | None:

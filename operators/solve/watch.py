@@ -4,6 +4,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ...bridge.accessors import current_action
+from ...bridge.armature.poses import frames_per_second, metres_per_unit
 from ...bridge.repairs.stored import look_at_examination
 from ...bridge.takes.takes import look_again
 from .common import chosen_armature
@@ -14,10 +15,12 @@ DELAY = 0.4  # s after the first change; keys that are dragged change with every
 
 
 @persistent  # type: ignore[untyped-decorator]  # any, in the stubs
-def follow_takes(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """Notes that an action or an armature changed."""
+def follow_takes(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """Notes that an action, an armature, or the scene's clock or unit changed."""
     ids = (update.id for update in depsgraph.updates)
-    if any(isinstance(each, bpy.types.Action | bpy.types.Object) for each in ids):
+    before, session().units = session().units, (frames_per_second(scene), metres_per_unit(scene))
+    moved = any(isinstance(each, bpy.types.Action | bpy.types.Object) for each in ids)
+    if moved or session().units != before:
         look_soon()
 
 

@@ -16,6 +16,7 @@ from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.actions import read_recorded, recorded_action, show
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.recipe.result import ResultOptions
+from hangtime.bridge.scene.surfaces_digest import ELSEWHERE
 from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.takes import (
     EDIT_CHANGED,
@@ -133,6 +134,19 @@ def test_a_result_is_stale_after_a_surface_has_changed(armature: bpy.types.Objec
     change(key.co, "y", 0.5)
     change(still.location, "x", 2.0)
     change(still.data.vertices[0].co, "z", -0.7)
+
+
+def test_a_result_is_stale_after_its_armature_has_moved_among_surfaces(
+    armature: bpy.types.Object,
+) -> None:
+    free = adapt(armature, 10, 20, 0.1)
+    add_row(armature, make_box("Crate", (3.0, 0.0, 0.0)))
+    among = adapt(armature, 10, 20, 0.2)
+    for metres, stale in ((0.5, ELSEWHERE), (-0.5, "")):
+        armature.location.x += metres
+        bpy.context.view_layer.update()
+        look_again(armature)
+        assert (free.hangtime.stale, among.hangtime.stale) == ("", stale)
 
 
 def test_the_list_of_takes_leaves_the_recordings_name_out(armature: bpy.types.Object) -> None:
