@@ -9,12 +9,13 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ...solver.data.requests import Path
-from ..accessors import current_scene
 from ..armature import fcurves
-from ..armature.poses import evaluated
+from ..armature.incremental import complete
 from ..constraint_kinds import point
 from ..properties.constraint import HangtimeConstraint
 from ..rows.times import Clip, followed_frames
+from ..scene.movable import simulate
+from ..scene.seen import seen_at
 
 
 def paths_of(rows: Iterable[HangtimeConstraint], clip: Clip, metres: float) -> dict[str, Path]:
@@ -67,15 +68,8 @@ def _sampled(
     targets: Sequence[bpy.types.Object], frames: Sequence[float]
 ) -> dict[bpy.types.Object, FloatArray]:
     """(T, 3) places of each object in Blender's evaluated scene, Blender units."""
-    places = {target: np.empty((len(frames), 3)) for target in targets}
     if not targets:
-        return places
-    scene = current_scene()
-    with evaluated(targets):
-        for t, frame in enumerate(frames):
-            whole = int(np.floor(frame))
-            scene.frame_set(whole, subframe=frame - whole)
-            graph = bpy.context.evaluated_depsgraph_get()
-            for target in targets:
-                places[target][t] = target.evaluated_get(graph).matrix_world.translation
-    return places
+        return {}
+    complete(simulate(targets, frames[-1]))
+    seen = seen_at(targets, np.array(frames), lambda each: np.array(each.matrix_world.translation))
+    return dict(zip(targets, np.array(seen, float).transpose(1, 0, 2), strict=True))

@@ -12,8 +12,10 @@ from mathutils.bvhtree import BVHTree
 
 from ...solver.arrays import FloatArray
 from ...solver.data.faults import SceneFault
+from ..armature.incremental import complete
 from .members import Member
 from .mesh import Triangles, read_triangles
+from .movable import simulate
 from .seen import seen_at
 
 STEEP = 0.3  # of a face's unit normal along the vertical; below, nobody stands on it
@@ -62,6 +64,7 @@ def ground_faces(of: Sequence[Member], frame: float) -> GroundFaces:
     """Faces of ground where it is at a scene frame; what has none is left out, as the solver's
     reading tells of it. The scene's frame is afterwards what it was."""
     objects = [member.object for member in of]
+    complete(simulate(objects, frame))
     found = seen_at(objects, np.array([frame]), _placed)[0]
     return GroundFaces(
         [_Tree(each, *placed) for each, placed in zip(objects, found, strict=True) if placed]

@@ -22,7 +22,7 @@ from ..armature.poses import metres_per_unit
 from .bone_parts import BonePart, read_bone_parts
 from .members import Member
 from .mesh import Triangles, read_triangles
-from .movable import may_deform, may_move
+from .movable import may_deform, may_move, simulate
 from .rigid import rigid_movement
 from .seen import Showing, seen_at
 
@@ -49,6 +49,7 @@ def read_scene(
     if not of:
         return SceneReading()
     objects = [member.object for member in of]
+    yield from simulate(objects, frames[-1], showing)
     first = yield from in_slices(frames[:1], partial(_shapes, objects), showing)
     shapes = first[0][0]
     matrices = yield from _matrices(objects, frames, showing)

@@ -17,8 +17,8 @@ from ..action_slots import all_curves
 from ..armature.keys_digest import keys_digest
 from ..armature.poses import frames_per_second, metres_per_unit
 from ..properties.settings import HangtimeSettings
-from .bone_parts import bending_armature
 from .members import objects_of
+from .movable import movers
 
 _PLACED_BY = (
     *("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale"),
@@ -77,7 +77,7 @@ class Conditions:
 
 def _stands(armature: bpy.types.Object) -> str:
     """Of an armature's place but for its own keys, which are now of one take, now of another."""
-    others = [_movement(each) for each in _movers(armature) if each != armature]
+    others = [_movement(each) for each in movers(armature) if each != armature]
     return str(crc32(repr((_movement(armature)[2:], others)).encode()))
 
 
@@ -105,7 +105,7 @@ def _digest(
     shape = shapes.get(thing.data)
     if shape is None:
         shape = shapes[thing.data] = _shape(thing.data)
-    return repr((shape, [_movement(each) for each in _movers(thing) if each != performer]))
+    return repr((shape, [_movement(each) for each in movers(thing) if each != performer]))
 
 
 def _shape(data: bpy.types.ID | None) -> int:
@@ -114,16 +114,6 @@ def _shape(data: bpy.types.ID | None) -> int:
     vertices = np.empty(3 * len(data.vertices), np.float32)
     data.vertices.foreach_get("co", vertices)
     return crc32(vertices.tobytes())
-
-
-def _movers(thing: bpy.types.Object) -> list[bpy.types.Object]:
-    """An object, and what it hangs on or follows."""
-    found = [thing]
-    for each in found:  # which grows
-        targets = (getattr(constraint, "target", None) for constraint in each.constraints)
-        more = dict.fromkeys((each.parent, bending_armature(each), *targets))
-        found += [other for other in more if other is not None and other not in found]
-    return found
 
 
 def _movement(thing: bpy.types.Object) -> tuple[object, ...]:
