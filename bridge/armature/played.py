@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from fractions import Fraction
+from math import isclose
 
 import bpy
 import numpy as np
@@ -34,6 +36,7 @@ from ..played_strips import (
 from . import fcurves
 
 SAME_SCALE = 1e-3  # of a strip, to which it is none
+LARGEST_DENOMINATOR, NEAR_RATIO = 8, 5e-3  # of a strip's scale that is meant to be a simple one
 _TRIPLES = ("co", "handle_left", "handle_right")
 
 
@@ -73,10 +76,16 @@ def wrong_speed(owner: bpy.types.Object, action: bpy.types.Action, told: UnseenS
     scale = time_of(strip).scale if strip is not None else 1.0
     if strip is None or told.rate is None or abs(scale - 1.0) < SAME_SCALE:
         return told
-    fitting = scale * told.scene_rate / told.rate
+    fitting = _simple(scale * told.scene_rate / told.rate)
     return ScaledStrip(
         told.first, told.last, told.rate, told.scene_rate, strip.name, scale, fitting
     )
+
+
+def _simple(ratio: float) -> float:
+    """A simple ratio where it is as near as falls can tell, else the ratio itself."""
+    simple = float(Fraction(ratio).limit_denominator(LARGEST_DENOMINATOR))
+    return simple if isclose(simple, ratio, rel_tol=NEAR_RATIO) else ratio
 
 
 def require_unstarred(owner: bpy.types.Object) -> None:

@@ -4,6 +4,7 @@ import bpy
 
 from ...bridge.accessors import current_scene
 from ...bridge.armature.actions import recorded_action
+from ...bridge.armature.poses import set_frame_rate
 from ...bridge.files.object_scale import scale_object
 from ...bridge.properties.settings import settings_of
 from ...solver.data.faults import Fault
@@ -47,12 +48,11 @@ class SetFrameRateOperator(MendingOperator, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    rate: bpy.props.IntProperty(name="Frame Rate", default=24, min=1, max=1000)
+    rate: bpy.props.FloatProperty(name="Frame Rate", default=24.0, min=1.0, max=1000.0)
 
     def mend(self, _armature: bpy.types.Object) -> OperatorResult:
-        render = current_scene().render
-        render.fps, render.fps_base = self.rate, 1.0
-        return self.done(f"The scene has {self.rate} frames a second now")
+        set_frame_rate(current_scene(), self.rate)
+        return self.done(f"The scene has {self.rate:.5g} frames a second now")
 
 
 class ScaleToHumanOperator(MendingOperator, bpy.types.Operator):

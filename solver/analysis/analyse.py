@@ -151,17 +151,17 @@ def _told(
         yield UnseenSupport(first, last, boxes, rate, recording.rate, skidding=skidding)
 
 
-def agreed_rate(performance: Performance, schedule: ContactSchedule) -> int | None:
+def agreed_rate(performance: Performance, schedule: ContactSchedule) -> float | None:
     """The frame rate at which the body falls most of the time in which nothing touches; None where
     there is none: a clock that is wrong is so in every flight."""
-    seconds: defaultdict[int | None, float] = defaultdict(float)
+    seconds: defaultdict[float | None, float] = defaultdict(float)
     for gap in schedule.unseen:
         seconds[_fitting_rate(performance, gap, schedule.floor_m)] += gap.end - gap.start
     aloft = sum(seconds.values()) + sum(flight.end - flight.start for flight in schedule.flights)
     return next((rate for rate, spent in seconds.items() if spent > MOST * aloft), None)
 
 
-def _fitting_rate(performance: Performance, gap: Interval, floor_m: float) -> int | None:
+def _fitting_rate(performance: Performance, gap: Interval, floor_m: float) -> float | None:
     """The frame rate at which the body falls in a gap; None where that does not explain it."""
     if _leans(performance, gap, floor_m):
         return None

@@ -13,7 +13,7 @@ from ..analysis.performance import Performance, contact_points, leans
 from ..arrays import FloatArray
 from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import PointKind
-from ..scene.fall_rate import USUAL_RATES
+from ..scene.fall_rate import usual_rates
 from .finding import Finding, FindingKind
 from .local_poses import runs
 from .repairs import Repairs
@@ -202,7 +202,7 @@ def _usual(clock: float, rate: float, longest: float) -> float:
     """The scale of time with which the recording has a usual rate, where that is as near as the
     falls can tell."""
     true = rate / clock
-    usual = min(USUAL_RATES, key=lambda each: abs(np.log(each / true)))
+    usual = min(usual_rates(rate), key=lambda each: abs(np.log(each / true)))
     near = _uncertainty(longest * clock)
     return rate / usual if abs(np.log(usual / true)) < near else clock
 

@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
+from math import isclose
+
 import numpy as np
 
 from ..arrays import FloatArray
 from ..data.constants import STANDARD_GRAVITY
 
-USUAL_RATES = (12, 15, 24, 25, 30, 48, 50, 60, 72, 90, 100, 120, 144, 200, 240)
+_WHOLE_RATES = (12, 15, 24, 25, 30, 48, 50, 60, 72, 90, 100, 120, 144, 200, 240)
+_NTSC = 1000.0 / 1001.0  # times a whole rate: 23.976, 29.97
+_SAME = 3e-4  # relative, of rates; clips round their frame time
 NEAR = 0.12  # of a usual rate; an acceleration errs by twice that, which limbs that swing explain
 LEAST_INSTANTS = 6
 ROUGH = 0.1  # of the path's height, by which it may miss a parabola (rms)
 
 
-def fitting_rate(times: FloatArray, heights: FloatArray, rate: float) -> int | None:
+def usual_rates(rate: float) -> tuple[float, ...]:
+    """Rates, Hz, that a scene or recording of a rate, Hz, may be meant to have: whole ones, or
+    NTSC's beside NTSC's."""
+    ntsc = any(isclose(rate, _NTSC * whole, rel_tol=_SAME) for whole in _WHOLE_RATES)
+    return tuple((_NTSC if ntsc else 1.0) * whole for whole in _WHOLE_RATES)
+
+
+def fitting_rate(times: FloatArray, heights: FloatArray, rate: float) -> float | None:
     """The usual rate, Hz, at which the centre of mass at heights (T,), m, falls freely.
 
     times: (T,) s by the scene's rate, Hz, at which the frames were taken to follow each other. None
@@ -27,6 +38,6 @@ def fitting_rate(times: FloatArray, heights: FloatArray, rate: float) -> int | N
     if fall <= 0.0 or missed > ROUGH * np.ptp(heights):
         return None
     wanted = rate * np.sqrt(STANDARD_GRAVITY / fall)
-    usual = min(USUAL_RATES, key=lambda each: abs(np.log(each / wanted)))
+    usual = min(usual_rates(rate), key=lambda each: abs(np.log(each / wanted)))
     near = abs(usual / wanted - 1.0) < NEAR
     return usual if near and abs(usual / rate - 1.0) > NEAR else None

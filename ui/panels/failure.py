@@ -54,8 +54,10 @@ def draw_failure(
 
 def _draw_remedy(layout: bpy.types.UILayout, failure: Failure, settings: HangtimeSettings) -> None:
     match failure.fault:
-        case UnseenSupport(rate=int() as rate):
-            button = layout.operator(OperatorId.SET_FRAME_RATE, text=f"Set {rate} fps", icon="TIME")
+        case UnseenSupport(rate=float() as rate):
+            button = layout.operator(
+                OperatorId.SET_FRAME_RATE, text=f"Set {rate:.5g} fps", icon="TIME"
+            )
             button.rate = rate
         case UnseenSupport():
             layout.operator(OperatorId.EXAMINE, text="Examine the Recording", icon="VIEWZOOM")

@@ -167,8 +167,9 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
         "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
         "fall: the feet rest {boxes[0].size[2]:length} above the floor, as on a box. Add it (Add "
         "Box Here in the panel World, or an [[object]] in a recipe), or choose frames without it.",
-        "The body falls as gravity has it at {rate} frames a second, but the scene has "
-        "{scene_rate:.4g} (frames {first:g} to {last:g}); set the scene's frame rate to {rate}.",
+        "The body falls as gravity has it at {rate:.5g} frames a second, but the scene has "
+        "{scene_rate:.5g} (frames {first:g} to {last:g}); set the scene's frame rate to "
+        "{rate:.5g}.",
         "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
         "fall, for capture took the left leg for the right one; exchange them back (Examine, "
         'Exchange Back; repair = ["exchanged legs"] in a recipe), or choose frames without it.',
@@ -179,11 +180,11 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
         "not fall where neither foot touches the ground. Import the clip again with other axes, "
         'or turn it upright (Examine, Turn Upright; up = "…" in a recipe).',
     ),
-    faults.ScaledStrip: "The body falls as gravity has it at {rate} frames a second, but the scene "
-    "has {scene_rate:.4g} (frames {first:g} to {last:g}), and the NLA strip “{strip}” plays its "
-    "action at Scale {scale:.4g}; set the strip's Scale to {fitting_scale:.4g} (Nonlinear "
+    faults.ScaledStrip: "The body falls as gravity has it at {rate:.5g} frames a second, but the "
+    "scene has {scene_rate:.5g} (frames {first:g} to {last:g}), and the NLA strip “{strip}” plays "
+    "its action at Scale {scale:.4g}; set the strip's Scale to {fitting_scale:.4g} (Nonlinear "
     "Animation editor, sidebar, Action Clip), or, where it is meant to be so, the scene's frame "
-    "rate to {rate}.",
+    "rate to {rate:.5g}.",
     faults.UnseenSupports: "In frames {spans:spans} neither foot touches the ground, yet the body "
     "does not fall, so something unseen carries it (a box, a rail, a hand); choose frames without "
     "it, or let what carries it be ground in the panel World. If nothing does, give the scene the "

@@ -249,7 +249,7 @@ class UnseenSupport(Fault):
     first: float
     last: float
     boxes: tuple[SupportBox, ...] = ()
-    rate: int | None = None
+    rate: float | None = None
     scene_rate: float = 0.0
     exchanged: bool = False
     skidding: bool = False
@@ -264,7 +264,7 @@ class ScaledStrip(Fault):
 
     first: float
     last: float
-    rate: int
+    rate: float
     scene_rate: float
     strip: str
     scale: float

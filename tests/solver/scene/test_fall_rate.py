@@ -26,6 +26,13 @@ def test_a_fall_tells_at_which_rate_it_was_filmed(true: int, scene: int) -> None
     assert fitting_rate(np.arange(50) / scene, flown(true), scene) == true
 
 
+@pytest.mark.parametrize(("true", "scene"), [(48, 24), (30, 60), (120, 24)])
+def test_beside_a_rate_of_ntsc_s_the_others_are_ntsc_s_too(true: int, scene: int) -> None:
+    true_rate, scene_rate = true / 1.001, scene / 1.001
+    found = fitting_rate(np.arange(50) / scene_rate, flown(true_rate), scene_rate)
+    assert found == pytest.approx(true_rate, rel=1e-9)
+
+
 def test_what_falls_as_it_should_tells_no_other_rate() -> None:
     assert fitting_rate(np.arange(50) / 120.0, flown(120.0), 120.0) is None
 

@@ -29,16 +29,30 @@ def test_a_wrong_frame_rate_is_told_and_mended(jump: bpy.types.Object) -> None:
     assert active_stance(jump.hangtime).name == "ground 2"  # the landing is chosen
 
 
+@pytest.mark.usefixtures("jump")
+def test_a_wrong_rate_of_ntsc_s_is_mended_by_another() -> None:
+    scene = bpy.context.scene
+    scene.render.fps, scene.render.fps_base = 24, 1.001
+    with pytest.raises(RuntimeError, match=r"rate to 119\.88\."):
+        bpy.ops.hangtime.analyze()
+    assert bpy.ops.hangtime.set_frame_rate(rate=120.0 / 1.001) == {"FINISHED"}
+    assert (scene.render.fps, scene.render.fps_base) == (120, pytest.approx(1.001, rel=1e-6))
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+
+
+@pytest.mark.parametrize(("base", "scale"), [(1.0, 2.0), (1.001, 2.0), (1.0, 1.998)])
 def test_a_strip_that_plays_the_jump_too_slowly_is_named_with_the_scale_that_fits(
-    jump: bpy.types.Object,
+    jump: bpy.types.Object, base: float, scale: float
 ) -> None:
+    bpy.context.scene.render.fps_base = base
     data, settings = jump.animation_data, jump.hangtime
     strip = data.nla_tracks.new().strips.new("Jump", 1, data.action)
-    data.action, strip.scale = None, 2.0
+    data.action, strip.scale = None, scale
     start = strip.frame_start
-    settings.first_frame = round(start + 2.0 * (settings.first_frame - start))
-    settings.last_frame = round(start + 2.0 * (settings.last_frame - start))
-    with pytest.raises(RuntimeError, match="“Jump” plays its action at Scale 2; set the strip's"):
+    settings.first_frame = round(start + scale * (settings.first_frame - start))
+    settings.last_frame = round(start + scale * (settings.last_frame - start))
+    told = rf"“Jump” plays its action at Scale {scale:g}; set the strip's Scale to 1 \("
+    with pytest.raises(RuntimeError, match=told):
         bpy.ops.hangtime.analyze()
     strip.scale, settings.use_range = 1.0, False
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
