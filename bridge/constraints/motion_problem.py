@@ -26,7 +26,7 @@ from ..accessors import current_scene
 from ..armature.poses import frames_per_second, metres_per_unit
 from ..properties.contact import HangtimeContact
 from ..properties.settings import HangtimeSettings
-from ..properties.stances import active_contact, place
+from ..properties.stances import active_contact, move_empties, place
 from ..repairs.stored import applied, of_recording, unreadable
 from ..repairs.unreadable import require_readable
 from ..rows.copying import rows_named
@@ -364,7 +364,7 @@ def _restore(
     again = found_again(rows, edits, metre)
     for i, edit in again.contacts.items():
         row = rows[i]
-        row.used, row.empty = edit.used, edit.empty
+        row.used = edit.used
         row.start_frame = frame_of(row.found_start, edit.found_start, edit.start_frame)
         row.end_frame = frame_of(row.found_end, edit.found_end, edit.end_frame)
     going = movers(rows, again.contacts)
@@ -373,6 +373,9 @@ def _restore(
         place(settings, rows[i], (np.asarray(rows[i].found_at) + move).tolist(), whole=False)
     for i, edit in going.items():  # a contact that is raised leaves what it was on
         rows[i].on = edit.on
+    for i, edit in again.contacts.items():
+        rows[i].empty = edit.empty
+    move_empties(settings)
     if not again.displacement.slight(metre):
         _take_along(settings, again.displacement, schedule, first)
     kept = set(map(id, again.contacts.values()))

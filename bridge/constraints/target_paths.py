@@ -14,8 +14,7 @@ from ..armature.incremental import complete
 from ..constraint_kinds import point
 from ..properties.constraint import HangtimeConstraint
 from ..rows.times import Clip, followed_frames
-from ..scene.movable import simulate
-from ..scene.seen import seen_at
+from ..scene.seen import seen_at, simulate
 
 
 def paths_of(rows: Iterable[HangtimeConstraint], clip: Clip, metres: float) -> dict[str, Path]:

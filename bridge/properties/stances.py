@@ -1,20 +1,23 @@
 """Moving contacts' places, one by one or a whole stance at once, and what a stance's move is.
 
 Lengths in Blender units, angles in rad, world.
-A place has one truth, `row.at`; empties and the stances' offsets are kept to it. A stance's middle
+A place has one truth, `row.at`; empties and the stances' offsets are kept to it. Of an empty that
+moves in time it is where this is as the stance begins, which is looked at before a solve
+(scene/moving_empties.py). A stance's middle
 and move are those of its contacts that were found: one that the artist adds, or takes away again,
 changes neither.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import atan2, tau
 
 import bpy
 from mathutils import Matrix, Vector
 
 from ..accessors import attached
+from ..movable import may_move
 from ..rows.protocols import ContactRow, Settings, StanceRow
 
 _SAME = 1e-6  # Blender units
@@ -161,9 +164,10 @@ def active_stance(settings: Settings) -> StanceRow | None:
 
 
 def follow(empty: bpy.types.Object) -> None:
-    """Takes over where an empty that marks a contact has been moved to."""
+    """Takes over where an empty that marks a contact has been moved to. One that moves in time is
+    elsewhere at each frame that is shown, and tells nothing by that."""
     armature = getattr(attached(empty), "marks", None)
-    if armature is None:
+    if armature is None or may_move(empty):
         return
     settings: Settings = attached(armature)
     for row in settings.contacts:
@@ -172,33 +176,56 @@ def follow(empty: bpy.types.Object) -> None:
             place(settings, row, to.to_tuple())
 
 
+def follow_moving(settings: Settings, places: Mapping[str, Sequence[float]]) -> None:
+    """Takes over where empties that move are as their contacts' stances begin. What else is in the
+    stance goes along with the first of them where the settings say so.
+
+    places: by the contact's name.
+    """
+    led = set[str]()
+    for row in [each for each in settings.contacts if each.name in places]:
+        was, to = Vector(row.at), Vector(places[row.name])
+        if row.on is not None:
+            to.z = was.z  # the height is the surface's
+        if (to - was).length <= _SAME:
+            to = was
+        row.at = to
+        if row.phase not in led:
+            led.add(row.phase)
+            for contact in moving_with(settings, row):
+                if contact.name not in places:
+                    _put(contact, Vector(contact.at) + to - was)
+        _remember(settings, row.phase)
+
+
 def may_mark(empty: bpy.types.Object, armature: bpy.types.Object) -> bool:
     """Whether an empty marks an armature's contact; of a copied one it marks the original's."""
     return getattr(attached(empty), "marks", None) in (None, armature)
 
 
 def move_empties(settings: Settings) -> None:
-    """Puts the empties that mark contacts to where the contacts are."""
+    """Puts the empties that mark contacts to where the contacts are, but for those that move."""
     for row in settings.contacts:
-        _move_empty(row)
+        if row.empty is not None and not may_move(row.empty):
+            _shift_empty(row, Vector(row.at) - row.empty.matrix_world.translation)
 
 
 def _put(row: ContactRow, to: Vector) -> None:
     if abs(to.z - row.at[2]) > _SAME:
         row.on = None  # a height that somebody states is not a surface's
-    row.at = to
-    _move_empty(row)
+    was, row.at = Vector(row.at), to
+    if row.empty is not None:
+        began = was if may_move(row.empty) else row.empty.matrix_world.translation
+        _shift_empty(row, to - began)
 
 
-def _move_empty(row: ContactRow) -> None:
-    to = Vector(row.at)
-    if row.empty is None or not may_mark(row.empty, row.id_data):
+def _shift_empty(row: ContactRow, by: Vector) -> None:
+    empty = row.empty
+    if empty is None or not may_mark(empty, row.id_data) or by.length <= _SAME:
         return
-    if (row.empty.matrix_world.translation - to).length <= _SAME:
-        return
-    world = row.empty.matrix_world.copy()
-    world.translation = to
-    row.empty.matrix_world = world
+    world = empty.matrix_world.copy()
+    world.translation += by
+    empty.matrix_world = world
 
 
 def _remember(settings: Settings, phase: str) -> None:

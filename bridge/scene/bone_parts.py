@@ -37,15 +37,6 @@ class BonePart:
     matrices: FloatArray
 
 
-def bending_armature(thing: bpy.types.Object) -> bpy.types.Object | None:
-    """The armature whose bones carry an object's mesh, by a modifier or as its parent."""
-    for modifier in thing.modifiers:
-        if isinstance(modifier, bpy.types.ArmatureModifier) and modifier.object is not None:
-            return modifier.object
-    bent = thing.type == "MESH" and thing.parent_type == "ARMATURE"
-    return thing.parent if bent else None
-
-
 def read_bone_parts(
     thing: bpy.types.Object,
     armature: bpy.types.Object,

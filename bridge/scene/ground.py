@@ -15,8 +15,7 @@ from ...solver.data.faults import SceneFault
 from ..armature.incremental import complete
 from .members import Member
 from .mesh import Triangles, read_triangles
-from .movable import simulate
-from .seen import seen_at
+from .seen import seen_at, simulate
 
 STEEP = 0.3  # of a face's unit normal along the vertical; below, nobody stands on it
 ABOVE = 1.0  # by how much rays begin above the highest vertex

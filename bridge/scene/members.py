@@ -9,10 +9,10 @@ import bpy
 
 from ...solver.data.faults import ObjectGone
 from ...solver.data.scene import SceneRole
+from ..movable import bending_armature
 from ..properties.settings import HangtimeSettings
 from ..properties.surface import SOLID_TYPES, HangtimeSurface
 from ..rows.choices import SurfaceRole
-from .bone_parts import bending_armature
 
 
 @dataclass(frozen=True)

@@ -19,12 +19,12 @@ from ...solver.data.scene import SceneObject
 from ..accessors import current_scene
 from ..armature.incremental import Incremental, in_slices
 from ..armature.poses import metres_per_unit
+from ..movable import may_deform, may_move
 from .bone_parts import BonePart, read_bone_parts
 from .members import Member
 from .mesh import Triangles, read_triangles
-from .movable import may_deform, may_move, simulate
 from .rigid import rigid_movement
-from .seen import Showing, seen_at
+from .seen import Showing, seen_at, simulate
 
 _NEAR = 1e-5  # m and of rotations' entries; less is the same place
 

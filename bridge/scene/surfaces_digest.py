@@ -16,9 +16,9 @@ from ..accessors import current_scene
 from ..action_slots import all_curves
 from ..armature.keys_digest import keys_digest
 from ..armature.poses import frames_per_second, metres_per_unit
+from ..movable import movers
 from ..properties.settings import HangtimeSettings
 from .members import objects_of
-from .movable import movers
 
 _PLACED_BY = (
     *("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale"),

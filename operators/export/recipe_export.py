@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 from bpy_extras.io_utils import ExportHelper
 
+from ...bridge.armature.actions import showing_recorded
 from ...bridge.armature.incremental import complete
 from ...bridge.formats.obj import obj_text
 from ...bridge.properties.settings import settings_of
@@ -15,6 +16,7 @@ from ...bridge.recipe.object_texts import mesh_files
 from ...bridge.recipe.problem import write_recipe
 from ...bridge.recipe.shortest import shortest
 from ...bridge.repairs.stored import repairs_to_write
+from ...bridge.scene.moving_empties import take_places
 from ...bridge.takes.options import result_options
 from ...solver.data.problem import MotionProblem
 from ...solver.data.scene import SceneObject
@@ -54,8 +56,10 @@ class ExportRecipeOperator(FaultyOperator, bpy.types.Operator, ExportHelper):  #
         return ExportHelper.invoke(self, context, event)  # type: ignore[func-returns-value, return-value]
 
     def run(self, context: bpy.types.Context) -> OperatorResult:
+        armature = required_armature(context)
+        settings = settings_of(armature)
+        complete(take_places(settings, showing_recorded(armature)))
         asked = complete(ask_for(context))
-        settings = settings_of(required_armature(context))
         problem = shortest(_as_adapted(asked.problem, settings.method))
         path = Path(bpy.path.abspath(self.filepath))
         files = mesh_files(problem.scene)

@@ -36,6 +36,7 @@ from ...bridge.repairs.stored import undoubted
 from ...bridge.rows.aimed_requests import apart_from_aimed, require_unaimed
 from ...bridge.rows.choices import LoopRoot, WrittenAs
 from ...bridge.rows.phases import listed
+from ...bridge.scene.moving_empties import take_places
 from ...bridge.takes.options import loop_options, result_options
 from ...bridge.takes.takes import AskedSettings
 from ...bridge.takes.write_result import (
@@ -58,7 +59,7 @@ from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
-from ..words.doubt_text import distance_doubts, doubts_of
+from ..words.doubt_text import distance_doubts, doubts_of, empty_doubts
 from .common import chosen_armature, hindrance, quick_solution, refined_solution, required_armature
 from .keys import key_options
 from .live import live
@@ -125,6 +126,7 @@ class Adapting(TaskOperator):
 
     def _asked(self, context: bpy.types.Context) -> Incremental[Asked]:
         armature = required_armature(context)  # another may be chosen by the time it is read
+        left = yield from take_places(settings_of(armature), showing_recorded(armature))
         asked = yield from ask_for(context)
         session().advance(SolveState.SOLVING)
         settings, requests = settings_of(armature), asked.problem.requests
@@ -134,7 +136,8 @@ class Adapting(TaskOperator):
         frames = None if first is None or last is None else (first, last)
         meant = replace(asked.problem, frames=frames)
         doubts = doubts_of(meant, settings.measured_height, asked.recording.frames)
-        for doubt in (*doubts, *distance_doubts(meant, asked.recording.heads)):
+        far = distance_doubts(meant, asked.recording.heads)
+        for doubt in (*doubts, *far, *empty_doubts(left)):
             self.report({"WARNING"}, doubt)
         return replace(asked, problem=replace(asked.problem, requests=requests))
 

@@ -5,6 +5,7 @@ from math import isfinite
 
 import numpy as np
 
+from ...bridge.scene.moving_empties import LeftEmpty
 from ...solver.arrays import FloatArray
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import ChosenTake, Origin
@@ -58,6 +59,19 @@ def distance_doubts(problem: MotionProblem, heads: FloatArray) -> list[str]:
     return [
         f"{names}: {most:.0f} m away from the recording, further than anybody jumps; lengths "
         "are in metres, and a whole scene is moved with its armature"
+    ]
+
+
+def empty_doubts(left: Sequence[LeftEmpty]) -> list[str]:
+    """A line where empties go on while the contacts that they place stand."""
+    if not left:
+        return []
+    most = max(left, key=lambda each: each.away)
+    return [
+        f"{_quoted(each.contact for each in left)}: placed by empties that move on while the "
+        f"contact stands (“{most.empty}” by {length(most.away)} from frame {most.first:.0f} to "
+        f"{most.last:.0f}); it stays where its empty is first. To have it ride, add what the empty "
+        "hangs on to the surfaces of World, and choose it as the contact's On"
     ]
 
 
