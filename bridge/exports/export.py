@@ -14,7 +14,7 @@ from ..rows.choices import FileFormat, RootMotion
 from .baked_rig import bake
 from .engines import CONVENTIONS, format_of
 from .placed_takes import frames_of, outline_for, place_takes
-from .skin import copy_skin
+from .skin import Skin, copy_skin, skin_of
 from .writers import require_usd, write
 
 AS_IT_IS = ExportOptions()
@@ -26,13 +26,14 @@ def export_takes(
     path: str | Path,
     options: ExportOptions = AS_IT_IS,
     pelvis: str | None = None,
-) -> None:
+) -> Skin:
     """Write an armature with these takes alone, a key on every frame, each under its action's name.
 
     pelvis: the bone; needed where something else is to carry the way. Folders are made where
     missing. The scene is left as it was. A single take keeps its frames where the file is for no
-    engine, as long as none is below 0, where files have none; others begin at 0 s. Raises
-    OutputNotWritable, MissingPart, SeveralTakes (a USD file holds one), SameUsdNames.
+    engine, as long as none is below 0, where files have none; others begin at 0 s. Returns the
+    skin, whose meshes are in the file. Raises OutputNotWritable, MissingPart, SeveralTakes (a USD
+    file holds one), SameUsdNames.
     """
     form = format_of(options)
     if form is FileFormat.USD and len(takes) > 1:
@@ -41,17 +42,18 @@ def export_takes(
         raise MissingPart("pelvis")
     alone = len(takes) == 1 and not CONVENTIONS[options.engine].clean
     keeps = alone and frames_of(takes[0])[0] >= 0
+    skin = skin_of(armature) if options.skin else Skin()
     with scene_restored():
         found = place_takes(armature, takes, options, pelvis, keeps_frames=keeps)
         before = data_blocks()
         try:
             rig = bake("Exported", found.skeleton, found.placed, found.takes)
             names = {rig: CONVENTIONS[options.engine].object or armature.name}
-            if options.skin:
-                names |= copy_skin(armature, rig, found.from_armature)
+            names |= copy_skin(skin, armature, rig, found.from_armature)
             write(rig, names, found.takes, Path(path), options, keeps_frames=keeps)
         finally:
             remove_added(before)
+    return skin
 
 
 def require_exportable(

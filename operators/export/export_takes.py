@@ -23,6 +23,7 @@ from ..solve.common import (
     tweaked,
 )
 from ..solve.results import performer_of, required_result
+from .skin_text import skin_text
 
 NO_NAME = "no file name is given"
 NOT_ACCEPTED = "Accept a result first; what is exported are accepted results"
@@ -130,10 +131,11 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
         options = self._options(bpy.path.abspath(self.filepath))
         ending = ENDINGS[format_of(options)]
         path = bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ending)
-        export_takes(performer, taken, path, options, _pelvis(armature, performer))
+        skin = export_takes(performer, taken, path, options, _pelvis(armature, performer))
         left_out = [take.name for take in chosen if take not in taken]
         since = {take.name: unphysical_since(armature, take) for take in taken}
-        self._tell(performer, Path(path).name, options, left_out, since)
+        said = Path(path).name + (skin_text(skin) if options.skin else "")
+        self._tell(performer, said, options, left_out, since)
         return {"FINISHED"}
 
     def _options(self, path: str = "") -> ExportOptions:

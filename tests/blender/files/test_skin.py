@@ -13,6 +13,7 @@ from hangtime.bridge.exports.engines import ENDINGS
 from hangtime.bridge.exports.export import export_takes
 from hangtime.bridge.recipe.export import ExportOptions
 from hangtime.bridge.rows.choices import Engine, FileFormat
+from hangtime.operators.export.skin_text import skin_text
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.blender.helpers.actions import animated_rig
 
@@ -53,6 +54,20 @@ def shown(mesh: bpy.types.Object) -> np.ndarray:
     return np.array([posed.matrix_world @ corner.co for corner in posed.data.vertices])
 
 
+def skin_in(path: Path) -> bpy.types.Object:
+    """The one mesh "Body" of a file, which is all that the scene then holds."""
+    rigs.reset()
+    match path.suffix:
+        case ".fbx":
+            bpy.ops.import_scene.fbx(filepath=str(path), anim_offset=0.0)
+        case ".glb":
+            bpy.ops.import_scene.gltf(filepath=str(path))
+        case _:
+            bpy.ops.wm.usd_import(filepath=str(path))
+    (found,) = (o for o in bpy.data.objects if o.type == "MESH" and o.name.startswith("Body"))
+    return found
+
+
 @pytest.mark.parametrize("form", FileFormat)
 @pytest.mark.parametrize("engine", [Engine.NONE, Engine.UNREAL, Engine.UNITY])
 def test_skin_follows_the_bones_in_the_file_as_it_did(
@@ -68,18 +83,9 @@ def test_skin_follows_the_bones_in_the_file_as_it_did(
     expected = shown(body)
     export_takes(armature, [action], path, ExportOptions(engine, form, skin=True))
     assert (body.name, body.parent, body.modifiers[0].object) == ("Body", armature, armature)
-    rigs.reset()
-    match form:
-        case FileFormat.FBX:
-            bpy.ops.import_scene.fbx(filepath=str(path), anim_offset=0.0)
-        case FileFormat.GLTF:
-            bpy.ops.import_scene.gltf(filepath=str(path))
-        case FileFormat.USD:
-            bpy.ops.wm.usd_import(filepath=str(path))
-    meshes = [o for o in bpy.data.objects if o.type == "MESH" and o.name.startswith("Body")]
-    assert len(meshes) == 1
+    mesh = skin_in(path)
     bpy.context.scene.frame_set(round(FRAME - begins))
-    found = shown(meshes[0])
+    found = shown(mesh)
     apart = np.linalg.norm(found[:, None] - expected[None], axis=2)
     assert apart.min(axis=0).max() < 1e-4
     assert apart.min(axis=1).max() < 1e-4
@@ -98,3 +104,44 @@ def test_hidden_meshes_stay_out_of_the_file(tmp_path: Path) -> None:
     said = path.read_text()
     assert '"Body"' in said
     assert '"Proxy"' not in said
+
+
+@pytest.mark.parametrize("form", FileFormat)
+def test_a_mesh_that_its_parent_deforms_goes_along_without_a_modifier(
+    form: FileFormat, tmp_path: Path
+) -> None:
+    armature = animated_rig()
+    body = skinned(armature)
+    body.modifiers.clear()
+    body.parent_type = "ARMATURE"
+    bpy.context.scene.frame_set(FRAME)
+    expected = shown(body)
+    path = tmp_path / f"body{ENDINGS[form]}"
+    options = ExportOptions(format=form, skin=True)
+    export_takes(armature, [armature.animation_data.action], path, options)
+    assert len(body.modifiers) == 0
+    found = skin_in(path)
+    bpy.context.scene.frame_set(FRAME)
+    apart = np.linalg.norm(shown(found)[:, None] - expected[None], axis=2)
+    assert apart.min(axis=0).max() < 1e-4
+
+
+def test_what_is_no_mesh_or_hangs_on_a_bone_is_left_out_and_named(tmp_path: Path) -> None:
+    """An armature that deforms them does not keep the meshes from being written."""
+    armature = animated_rig()
+    skinned(armature)
+    lattice = bpy.data.objects.new("Eye", bpy.data.lattices.new("Eye"))
+    rope = bpy.data.objects.new("Rope", bpy.data.curves.new("Rope", "CURVE"))
+    sword = bpy.data.objects.new("Sword", bpy.data.meshes.new("Sword"))
+    for thing in (lattice, rope, sword):
+        bpy.context.collection.objects.link(thing)
+    for thing in (lattice, rope):
+        thing.modifiers.new("Armature", "ARMATURE").object = armature
+    sword.parent, sword.parent_type = armature, "BONE"
+    sword.parent_bone = armature.data.bones[0].name
+    path = tmp_path / "body.fbx"
+    skin = export_takes(armature, [armature.animation_data.action], path, ExportOptions(skin=True))
+    assert skin_text(skin).startswith(" with 1 mesh; left out")
+    assert skin_text(skin).endswith(": Rope, Sword")
+    assert [lattice.name for lattice in bpy.data.lattices] == ["Eye"]
+    assert skin_in(path).name == "Body"
