@@ -2,24 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 
 import bpy
 from mathutils import Matrix
 
 from ...solver.arrays import FloatArray
-from ..accessors import current_scene, present
+from ..accessors import armature_data, current_scene, present
 
 _SOLID = ("MESH", "CURVE", "SURFACE", "FONT")  # types of objects that one sees
 
 
 @dataclass(frozen=True)
 class Skin:
-    """Meshes that an armature deforms, and what is seen on it beside: props that hang on it
-    undeformed, and curves and texts that it deforms. Only meshes can go into a file."""
+    """Meshes that an armature deforms, and what cannot go into a file with them.
+
+    others: what is seen on the armature beside, as props that hang on it undeformed, and curves and
+    texts that it deforms. unapplied: names of modifiers of meshes whose shape keys are kept.
+    """
 
     meshes: tuple[bpy.types.Object, ...] = ()
     others: tuple[bpy.types.Object, ...] = ()
+    unapplied: Mapping[bpy.types.Object, tuple[str, ...]] = field(default_factory=dict)
 
 
 def skin_of(armature: bpy.types.Object) -> Skin:
@@ -32,7 +38,9 @@ def skin_of(armature: bpy.types.Object) -> Skin:
             meshes.append(thing)
         elif seen and thing.type in _SOLID and (deformed or thing.parent == armature):
             others.append(thing)
-    return Skin(tuple(meshes), tuple(others))
+    unapplied = {mesh: _unapplied(mesh, armature) for mesh in meshes if has_shapes(mesh)}
+    lost = {mesh: names for mesh, names in unapplied.items() if names}
+    return Skin(tuple(meshes), tuple(others), lost)
 
 
 def copy_skin(
@@ -40,23 +48,74 @@ def copy_skin(
 ) -> dict[bpy.types.Object, str]:
     """Copies of the meshes that an armature deforms, which a rig deforms instead, and the meshes'
     names. to_rig (4, 4): from the armature's space to the rig's."""
-    made = {}
-    for thing in skin.meshes:
-        copy = thing.copy()
-        mesh = present(thing.data).copy()
-        assert isinstance(mesh, bpy.types.Mesh)
+    copies = {_copy(thing, armature): thing.name for thing in skin.meshes}
+    with _at_rest(armature):
+        graph = bpy.context.evaluated_depsgraph_get()
+        meshes = {copy: _as_seen(copy, graph) for copy in copies}
+        places = {copy: copy.matrix_world.copy() for copy in copies}
+    to_file = Matrix(to_rig.tolist()) @ armature.matrix_world.inverted()
+    for copy, mesh in meshes.items():
+        mesh.transform(to_file @ places[copy], shape_keys=True)
         copy.data = mesh
-        inside = armature.matrix_world.inverted() @ thing.matrix_world
-        mesh.transform(Matrix(to_rig.tolist()) @ inside, shape_keys=True)
-        copy.animation_data_clear()
         copy.constraints.clear()
-        copy.parent, copy.parent_type = rig, "OBJECT"
+        copy.parent = rig
         copy.matrix_parent_inverse = copy.matrix_basis = Matrix()
-        for modifier in _deformers(copy, armature) or [copy.modifiers.new("Armature", "ARMATURE")]:
+        _have_deform(copy, armature, rig)
+    return copies
+
+
+def has_shapes(thing: bpy.types.Object) -> bool:
+    """Whether a mesh has shape keys beside the basis."""
+    keys = _mesh_of(thing).shape_keys
+    return keys is not None and len(keys.key_blocks) > 1
+
+
+def _copy(thing: bpy.types.Object, armature: bpy.types.Object) -> bpy.types.Object:
+    """A copy of a mesh's object where it is, in sight, with a modifier for the armature."""
+    copy = thing.copy()
+    copy.animation_data_clear()
+    copy.hide_viewport = False
+    if copy.parent_type == "ARMATURE":
+        copy.parent_type = "OBJECT"
+    if not _deformers(copy, armature):
+        made = copy.modifiers.new("Armature", "ARMATURE")
+        made.object = armature  # type: ignore[attr-defined]
+    present(current_scene().collection).objects.link(copy)
+    return copy
+
+
+def _as_seen(copy: bpy.types.Object, graph: bpy.types.Depsgraph) -> bpy.types.Mesh:
+    """Its mesh with what the modifiers make of it; without that where there are shape keys, which
+    are for the vertices that the mesh has itself.
+
+    Exporters would do it too late, when lengths are the file's, or not at all.
+    """
+    if has_shapes(copy):
+        return _mesh_of(copy).copy()
+    seen = copy.evaluated_get(graph)
+    return bpy.data.meshes.new_from_object(seen, preserve_all_data_layers=True, depsgraph=graph)
+
+
+def _have_deform(copy: bpy.types.Object, armature: bpy.types.Object, rig: bpy.types.Object) -> None:
+    """Let the rig deform a copy in an armature's stead, and nothing else."""
+    deformers = _deformers(copy, armature)
+    for modifier in list(copy.modifiers):
+        if modifier in deformers:
             modifier.object = rig  # type: ignore[attr-defined]
-        present(current_scene().collection).objects.link(copy)
-        made[copy] = thing.name
-    return made
+        else:
+            copy.modifiers.remove(modifier)
+
+
+@contextmanager
+def _at_rest(armature: bpy.types.Object) -> Iterator[None]:
+    """Context in which an armature deforms nothing."""
+    data = armature_data(armature)
+    was = data.pose_position
+    data.pose_position = "REST"
+    try:
+        yield
+    finally:
+        data.pose_position = was
 
 
 def _deformed(thing: bpy.types.Object, armature: bpy.types.Object) -> bool:
@@ -69,3 +128,15 @@ def _deformers(thing: bpy.types.Object, armature: bpy.types.Object) -> list[bpy.
     """The modifiers by which an armature deforms an object."""
     found = (each for each in thing.modifiers if isinstance(each, bpy.types.ArmatureModifier))
     return [each for each in found if each.object == armature]
+
+
+def _unapplied(mesh: bpy.types.Object, armature: bpy.types.Object) -> tuple[str, ...]:
+    """Names of the modifiers that are seen, beside the armature's."""
+    deformers = _deformers(mesh, armature)
+    others = (each for each in mesh.modifiers if each not in deformers)
+    return tuple(each.name for each in others if each.show_viewport)
+
+
+def _mesh_of(thing: bpy.types.Object) -> bpy.types.Mesh:
+    assert isinstance(thing.data, bpy.types.Mesh)
+    return thing.data

@@ -145,3 +145,46 @@ def test_what_is_no_mesh_or_hangs_on_a_bone_is_left_out_and_named(tmp_path: Path
     assert skin_text(skin).endswith(": Rope, Sword")
     assert [lattice.name for lattice in bpy.data.lattices] == ["Eye"]
     assert skin_in(path).name == "Body"
+
+
+@pytest.mark.parametrize("form", FileFormat)
+@pytest.mark.parametrize("engine", [Engine.NONE, Engine.UNREAL, Engine.UNITY])
+def test_modifiers_are_in_the_file_with_their_lengths(
+    engine: Engine, form: FileFormat, tmp_path: Path
+) -> None:
+    """Unreal's unit is a hundredth of the scene's, and the mesh's object has a scale of its own."""
+    armature = animated_rig()
+    body = skinned(armature)
+    body.scale = (2.0, 2.0, 2.0)
+    shell = body.modifiers.new("Shell", "SOLIDIFY")
+    shell.thickness, shell.offset = 0.02, 1.0
+    twin = body.modifiers.new("Twin", "ARRAY")
+    twin.count, twin.use_relative_offset, twin.use_constant_offset = 2, False, True
+    twin.constant_offset_displace = (0.5, 0.0, 0.0)
+    body.modifiers.move(2, 0)
+    bpy.context.scene.frame_set(FRAME)
+    expected = shown(body)
+    action, path = armature.animation_data.action, tmp_path / f"body{ENDINGS[form]}"
+    begins = 0 if engine is Engine.NONE else action.frame_range[0]
+    export_takes(armature, [action], path, ExportOptions(engine, form, skin=True))
+    assert [modifier.type for modifier in body.modifiers] == ["ARRAY", "ARMATURE", "SOLIDIFY"]
+    assert armature.data.pose_position == "POSE"
+    found = skin_in(path)
+    bpy.context.scene.frame_set(round(FRAME - begins))
+    apart = np.linalg.norm(shown(found)[:, None] - expected[None], axis=2)
+    assert apart.min(axis=0).max() < 1e-3
+    assert apart.min(axis=1).max() < 1e-3
+
+
+@pytest.mark.parametrize("form", FileFormat)
+def test_modifiers_give_way_to_shape_keys_and_are_named(form: FileFormat, tmp_path: Path) -> None:
+    armature = animated_rig()
+    body = skinned(armature)
+    for name in ("Basis", "Smile"):
+        body.shape_key_add(name=name)
+    body.modifiers.new("Smooth", "SUBSURF")
+    path = tmp_path / f"body{ENDINGS[form]}"
+    action, options = armature.animation_data.action, ExportOptions(format=form, skin=True)
+    skin = export_takes(armature, [action], path, options)
+    assert skin_text(skin).endswith("for the sake of shape keys: Body (Smooth)")
+    assert "Smile" in skin_in(path).data.shape_keys.key_blocks
