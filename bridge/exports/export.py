@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import bpy
 
 from ...solver.data.faults import MissingPart, SeveralTakes
+from ..accessors import present
 from ..files.data_blocks import data_blocks, remove_added, scene_restored
 from ..recipe.export import ExportOptions
 from ..rows.choices import FileFormat, RootMotion
@@ -15,7 +17,7 @@ from .baked_rig import bake
 from .engines import CONVENTIONS, format_of
 from .placed_takes import frames_of, outline_for, place_takes
 from .skin import Skin, copy_skin, skin_of
-from .writers import require_usd, write
+from .writers import require_usd, under_name, write
 
 AS_IT_IS = ExportOptions()
 
@@ -49,8 +51,10 @@ def export_takes(
         try:
             rig = bake("Exported", found.skeleton, found.placed, found.takes)
             names = {rig: CONVENTIONS[options.engine].object or armature.name}
-            names |= copy_skin(skin, armature, rig, found.from_armature)
-            write(rig, names, found.takes, Path(path), options, keeps_frames=keeps)
+            copies = copy_skin(skin, armature, rig, found.from_armature)
+            names |= {copy: mesh.name for copy, mesh in copies.items()}
+            with _data_named(copies):
+                write(rig, names, found.takes, Path(path), options, keeps_frames=keeps)
         finally:
             remove_added(before)
     return skin
@@ -63,3 +67,14 @@ def require_exportable(
     SameUsdNames."""
     if format_of(options) is FileFormat.USD:
         require_usd(outline_for(armature, options, pelvis=None).names, Path(path))
+
+
+@contextmanager
+def _data_named(copies: Mapping[bpy.types.Object, bpy.types.Object]) -> Iterator[None]:
+    """Context in which copies' meshes are called as the originals' are, which are set aside; of
+    several that were one mesh the first."""
+    firsts = {mesh.data: copy.data for copy, mesh in reversed(copies.items())}
+    with ExitStack() as named:
+        for original, copy in firsts.items():
+            named.enter_context(under_name(copy, present(original).name, bpy.data.meshes))
+        yield

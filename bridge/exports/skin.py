@@ -45,10 +45,10 @@ def skin_of(armature: bpy.types.Object) -> Skin:
 
 def copy_skin(
     skin: Skin, armature: bpy.types.Object, rig: bpy.types.Object, to_rig: FloatArray
-) -> dict[bpy.types.Object, str]:
-    """Copies of the meshes that an armature deforms, which a rig deforms instead, and the meshes'
-    names. to_rig (4, 4): from the armature's space to the rig's."""
-    copies = {_copy(thing, armature): thing.name for thing in skin.meshes}
+) -> dict[bpy.types.Object, bpy.types.Object]:
+    """Copies of the meshes that an armature deforms, which a rig deforms instead, and the meshes.
+    to_rig (4, 4): from the armature's space to the rig's."""
+    copies = {_copy(thing, armature): thing for thing in skin.meshes}
     with _at_rest(armature):
         graph = bpy.context.evaluated_depsgraph_get()
         meshes = {copy: _as_seen(copy, graph) for copy in copies}

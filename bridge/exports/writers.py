@@ -48,13 +48,13 @@ def write(
     scene.frame_start, scene.frame_end = takes[0].first, max(take.last for take in takes)
     scene.frame_set(scene.frame_start - 1)
     with ExitStack() as called, tempfile.TemporaryDirectory() as folder:
-        called.enter_context(_called(rig.data, names[rig], bpy.data.armatures))
+        called.enter_context(under_name(rig.data, names[rig], bpy.data.armatures))
         for thing, name in names.items():
-            called.enter_context(_called(thing, name, bpy.data.objects))
+            called.enter_context(under_name(thing, name, bpy.data.objects))
         made = Path(folder) / f"export{ENDINGS[form]}"
         if form is FileFormat.FBX:
             if keeps_frames:  # only the scene's own take does, which is called as the scene is
-                called.enter_context(_called(scene, takes[0].name, bpy.data.scenes))
+                called.enter_context(under_name(scene, takes[0].name, bpy.data.scenes))
             # What a viewport hides does not count as selected where that is asked.
             called.enter_context(bpy.context.temp_override(selected_objects=list(names)))
             _write_fbx(made, convention, keeps_frames=keeps_frames)
@@ -148,7 +148,7 @@ def _usd_options() -> list[str]:
 
 
 @contextmanager
-def _called(block: Any, name: str, blocks: Any) -> Iterator[None]:
+def under_name(block: Any, name: str, blocks: Any) -> Iterator[None]:
     """Context in which a data-block has a name, and whichever had it has another."""
     own, other = block.name, blocks.get((name, None))
     if other == block:

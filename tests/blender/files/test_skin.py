@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -188,3 +189,24 @@ def test_modifiers_give_way_to_shape_keys_and_are_named(form: FileFormat, tmp_pa
     skin = export_takes(armature, [action], path, options)
     assert skin_text(skin).endswith("for the sake of shape keys: Body (Smooth)")
     assert "Smile" in skin_in(path).data.shape_keys.key_blocks
+
+
+@pytest.mark.parametrize("form", FileFormat)
+def test_mesh_data_keep_their_names_in_the_file(form: FileFormat, tmp_path: Path) -> None:
+    armature = animated_rig()
+    body = skinned(armature)
+    body.data.name = "BodyMesh"
+    twin = body.copy()
+    twin.name = "Twin"
+    bpy.context.collection.objects.link(twin)
+    path = tmp_path / f"body{ENDINGS[form]}"
+    action, options = armature.animation_data.action, ExportOptions(format=form, skin=True)
+    export_takes(armature, [action], path, options)
+    assert (body.data.name, twin.data) == ("BodyMesh", body.data)
+    written = path.read_bytes()
+    pattern = {
+        FileFormat.FBX: rb"([\w.]+)\x00\x01Geometry",
+        FileFormat.GLTF: rb'"name":"([\w.]+)","primitives"',
+        FileFormat.USD: rb'def Mesh "([\w.]+)"',
+    }[form]
+    assert sorted(re.findall(pattern, written))[0] == b"BodyMesh"
