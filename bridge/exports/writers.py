@@ -89,6 +89,9 @@ def _write_fbx(path: Path, convention: Convention, *, keeps_frames: bool) -> Non
 
 
 def _write_gltf(path: Path) -> None:
+    # Blender's exporter multiplies a rate by its base in place of dividing.
+    render = current_scene().render
+    render.fps_base = 1.0 / render.fps_base
     bpy.ops.export_scene.gltf(
         filepath=str(path),
         export_format="GLB",

@@ -64,7 +64,9 @@ def _import(path: Path, *, native: bool) -> bool:
             bpy.ops.import_scene.fbx(filepath=str(path), anim_offset=0.0)
             return True
         case ".glb":
-            current_scene().unit_settings.scale_length = 1.0  # the file's metres become units
+            scene = current_scene()
+            scene.unit_settings.scale_length = 1.0  # the file's metres become units
+            scene.render.fps_base = 1.0 / scene.render.fps_base  # by which Blender multiplies
             bpy.ops.import_scene.gltf(filepath=str(path))
         case _:
             current_scene().unit_settings.scale_length = 1.0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import struct
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +17,7 @@ from hangtime.bridge.armature.write import side_by_side, write_action
 from hangtime.bridge.exports.export import export_takes
 from hangtime.bridge.files.reimport import reimport
 from hangtime.bridge.recipe.export import ExportOptions
-from hangtime.bridge.rows.choices import FileFormat
+from hangtime.bridge.rows.choices import Engine, FileFormat
 from hangtime.devtools.recordings import JUMP, find
 from hangtime.solver.data.faults import (
     OutputNotWritable,
@@ -104,6 +106,26 @@ def test_gltf_holds_the_action_by_its_name_and_comes_back(tmp_path: Path) -> Non
     columns = [again.index(bone.name) for bone in adapted.bones]
     np.testing.assert_allclose(again.heads[:, columns], adapted.heads, atol=1e-4)
     assert b'"name":"Longer Jump"' in path.read_bytes()
+
+
+@pytest.mark.parametrize(("fps", "base"), [(30, 1.001), (25, 2.0)])
+def test_gltf_lasts_as_long_as_the_scene_plays_it(fps: int, base: float, tmp_path: Path) -> None:
+    armature, path = animated_rig(), tmp_path / "rig.glb"
+    render, action = bpy.context.scene.render, armature.animation_data.action
+    render.fps, render.fps_base = fps, base
+    export_takes(armature, [action], path, ExportOptions(Engine.GODOT))
+    first, last = action.frame_range
+    assert _seconds(path) == pytest.approx((last - first) * base / fps, rel=1e-5)
+    assert (render.fps, render.fps_base) == (fps, pytest.approx(base))
+
+
+def _seconds(glb: Path) -> float:
+    """The latest key. Blender's importer takes the scene's rate for the file's and cannot tell."""
+    said = glb.read_bytes()
+    length = struct.unpack_from("<I", said, 12)[0]
+    told = json.loads(said[20 : 20 + length])
+    samplers = [sampler for each in told["animations"] for sampler in each["samplers"]]
+    return max(told["accessors"][sampler["input"]]["max"][0] for sampler in samplers)
 
 
 def test_fbx_that_cannot_be_written_is_a_fault(tmp_path: Path) -> None:
