@@ -17,7 +17,7 @@ from .baked_rig import bake
 from .engines import CONVENTIONS, format_of
 from .placed_takes import frames_of, outline_for, place_takes
 from .skin import Skin, copy_skin, skin_of
-from .writers import require_usd, under_name, write
+from .writers import require_format, under_name, write
 
 AS_IT_IS = ExportOptions()
 
@@ -65,8 +65,8 @@ def require_exportable(
 ) -> None:
     """What can be told of a file before there is a take for it. Raises OutputNotWritable,
     SameUsdNames."""
-    if format_of(options) is FileFormat.USD:
-        require_usd(outline_for(armature, options, pelvis=None).names, Path(path))
+    bones = outline_for(armature, options, pelvis=None).names
+    require_format(format_of(options), bones, Path(path))
 
 
 @contextmanager

@@ -8,12 +8,14 @@ import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import bpy
 
 from ...solver.data.faults import OutputNotWritable, SameUsdNames
 from ..accessors import armature_data, current_scene, present
+from ..addons import addon_enabled, has_addon
 from ..recipe.export import ExportOptions
 from ..rows.choices import FileFormat
 from .baked_rig import BakedTake
@@ -23,7 +25,9 @@ _SKELETONS = re.compile(
     r'def Xform ("[^"]+"\s*(?:\([^)]*\)\s*)?\{(?:(?!\bdef ).)*?def Skeleton )', re.S
 )
 
-
+_ADDONS: Mapping[FileFormat, str] = MappingProxyType(
+    {FileFormat.FBX: "io_scene_fbx", FileFormat.GLTF: "io_scene_gltf2"}
+)
 _UNICODE = "allow_unicode"  # an option from Blender 4.3 on
 
 
@@ -39,8 +43,7 @@ def write(
     """Write a baked rig, at rest where the file tells no take, and its skin, under these names. The
     scene's range and frame are left at the takes'. Raises OutputNotWritable, SameUsdNames."""
     form, convention = format_of(options), CONVENTIONS[options.engine]
-    if form is FileFormat.USD:
-        require_usd((bone.name for bone in armature_data(rig).bones), target)
+    require_format(form, (bone.name for bone in armature_data(rig).bones), target)
     scene = current_scene()
     for thing in names:
         thing.select_set(True)
@@ -52,6 +55,8 @@ def write(
         for thing, name in names.items():
             called.enter_context(under_name(thing, name, bpy.data.objects))
         made = Path(folder) / f"export{ENDINGS[form]}"
+        if form in _ADDONS:
+            called.enter_context(addon_enabled(_ADDONS[form]))
         if form is FileFormat.FBX:
             if keeps_frames:  # only the scene's own take does, which is called as the scene is
                 called.enter_context(under_name(scene, takes[0].name, bpy.data.scenes))
@@ -133,9 +138,14 @@ def usd_name(name: str) -> str:
     return f"_{made}" if made[:1].isdigit() else made
 
 
-def require_usd(bones: Iterable[str], target: Path) -> None:
-    """Raises OutputNotWritable where this Blender writes no USD file, SameUsdNames of bones that
-    one could not tell apart."""
+def require_format(form: FileFormat, bones: Iterable[str], target: Path) -> None:
+    """Raises OutputNotWritable where this Blender writes no such file, SameUsdNames of bones that a
+    USD file could not tell apart."""
+    if form in _ADDONS:
+        if not has_addon(_ADDONS[form]):
+            problem = f"this Blender comes without its add-on {_ADDONS[form]}"
+            raise OutputNotWritable(str(target), problem)
+        return
     if not bpy.app.build_options.usd:  # as Debian's is
         raise OutputNotWritable(str(target), "this Blender was built without USD")
     taken: dict[str, str] = {}

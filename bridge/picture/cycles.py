@@ -7,12 +7,10 @@ from contextlib import contextmanager
 from math import sqrt
 from pathlib import Path
 
-import bpy  # first, for it makes the next one importable
-
-# isort: split
-import addon_utils
+import bpy
 
 from ..accessors import present
+from ..addons import addon_enabled
 from .film_scene import FilmPainter
 from .layout import Layout
 from .scene import Painter
@@ -25,14 +23,14 @@ SEEN_THROUGH = 64  # surfaces behind each other: two for each box of a see-throu
 
 def render(layout: Layout, view: View, path: Path, width: int) -> None:
     """Render `layout` to the PNG file `path`."""
-    with _cycles(), _clean_scene() as scene:
+    with addon_enabled("cycles"), _clean_scene() as scene:
         Painter(scene, view.elevation).draw(layout, width, above=view.above)
         _render(scene, path)
 
 
 def render_film(layout: Layout, view: View, path: Path, width: int, rate: int) -> None:
     """Render `layout`, a figure of each tier a frame, to the MPEG-4 file `path`; rate: frames/s."""
-    with _cycles(), _clean_scene() as scene:
+    with addon_enabled("cycles"), _clean_scene() as scene:
         FilmPainter(scene, view.elevation).draw(layout, width)
         scene.frame_start, scene.frame_end = 1, max(len(tier.figures) for tier in layout.tiers)
         scene.render.fps = rate
@@ -77,19 +75,6 @@ def _clean_scene() -> Iterator[bpy.types.Scene]:
     finally:
         made = [block for kind in kinds for block in set(getattr(bpy.data, kind)) - before[kind]]
         bpy.data.batch_remove(made)
-
-
-@contextmanager
-def _cycles() -> Iterator[None]:
-    """Cycles is enabled inside, and disabled afterwards where the user had it disabled."""
-    _, enabled = addon_utils.check("cycles")
-    if not enabled:
-        addon_utils.enable("cycles")
-    try:
-        yield
-    finally:
-        if not enabled:
-            addon_utils.disable("cycles")
 
 
 def _render(scene: bpy.types.Scene, path: Path) -> None:

@@ -11,9 +11,12 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
+import addon_utils
+
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.armature.write import side_by_side, write_action
+from hangtime.bridge.exports.engines import ENDINGS
 from hangtime.bridge.exports.export import export_takes
 from hangtime.bridge.files.reimport import reimport
 from hangtime.bridge.recipe.export import ExportOptions
@@ -126,6 +129,22 @@ def _seconds(glb: Path) -> float:
     told = json.loads(said[20 : 20 + length])
     samplers = [sampler for each in told["animations"] for sampler in each["samplers"]]
     return max(told["accessors"][sampler["input"]]["max"][0] for sampler in samplers)
+
+
+@pytest.mark.parametrize(
+    ("form", "addon"), [(FileFormat.FBX, "io_scene_fbx"), (FileFormat.GLTF, "io_scene_gltf2")]
+)
+def test_an_exporter_that_is_switched_off_works_and_stays_so(
+    form: FileFormat, addon: str, tmp_path: Path
+) -> None:
+    armature, path = animated_rig(), tmp_path / f"rig{ENDINGS[form]}"
+    addon_utils.disable(addon)
+    try:
+        export_takes(armature, [armature.animation_data.action], path, ExportOptions(format=form))
+        assert path.stat().st_size > 0
+        assert not addon_utils.check(addon)[1]
+    finally:
+        addon_utils.enable(addon)
 
 
 def test_fbx_that_cannot_be_written_is_a_fault(tmp_path: Path) -> None:
