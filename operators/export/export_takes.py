@@ -27,6 +27,10 @@ from .skin_text import skin_text
 
 NO_NAME = "no file name is given"
 NOT_ACCEPTED = "Accept a result first; what is exported are accepted results"
+SCENE_LINKED = (
+    "The scene is linked, and nothing can be added to it for the export; open its own file, or link "
+    "the character into a scene of this one"
+)
 SHOWN_NOT_ACCEPTED = "The result that is shown is not accepted; accept it, or choose All Accepted"
 LEFT_OUT = "; left out, as another armature performs them: {}"
 UNPHYSICAL = "; {}: {}"
@@ -89,6 +93,8 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
         armature = chosen_armature(context)
         if armature is None or not _accepted(armature):
             return NOT_ACCEPTED
+        if not present(context.scene).is_editable:
+            return SCENE_LINKED
         return TWEAK_MODE if tweaked(armature) else None
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:

@@ -12,7 +12,6 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 import addon_utils
-
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.armature.write import side_by_side, write_action

@@ -82,6 +82,22 @@ def test_all_accepted_results_are_takes_of_one_file(
     assert current_action(accepted) == first
 
 
+def test_a_linked_scene_is_refused_in_words(accepted: bpy.types.Object, tmp_path: Path) -> None:
+    blend = tmp_path / "character.blend"
+    bpy.data.libraries.write(str(blend), {bpy.context.scene}, fake_user=True)
+    with bpy.data.libraries.load(str(blend), link=True) as (_, linked):
+        linked.scenes = [bpy.context.scene.name]
+    own = bpy.context.window.scene
+    bpy.context.window.scene = linked.scenes[0]
+    try:
+        there = next(o for o in linked.scenes[0].objects if o.type == "ARMATURE")
+        bpy.context.view_layer.objects.active = there
+        with pytest.raises(RuntimeError, match="The scene is linked"):
+            bpy.ops.hangtime.export(filepath=str(tmp_path / "jump.fbx"))
+    finally:
+        bpy.context.window.scene = own
+
+
 def test_a_usd_of_several_takes_is_refused_in_words(
     accepted: bpy.types.Object, tmp_path: Path
 ) -> None:
