@@ -73,7 +73,7 @@ def require_exportable(
 def _data_named(copies: Mapping[bpy.types.Object, bpy.types.Object]) -> Iterator[None]:
     """Context in which copies' meshes are called as the originals' are, which are set aside; of
     several that were one mesh the first."""
-    firsts = {mesh.data: copy.data for copy, mesh in reversed(copies.items())}
+    firsts = {mesh.data: copy.data for copy, mesh in reversed(list(copies.items()))}
     with ExitStack() as named:
         for original, copy in firsts.items():
             named.enter_context(under_name(copy, present(original).name, bpy.data.meshes))

@@ -28,8 +28,8 @@ from .skin_text import skin_text
 NO_NAME = "no file name is given"
 NOT_ACCEPTED = "Accept a result first; what is exported are accepted results"
 SCENE_LINKED = (
-    "The scene is linked, and nothing can be added to it for the export; open its own file, or link "
-    "the character into a scene of this one"
+    "The scene is linked, and nothing can be added to it for the export; open its own file, or "
+    "link the character into a scene of this one"
 )
 SHOWN_NOT_ACCEPTED = "The result that is shown is not accepted; accept it, or choose All Accepted"
 LEFT_OUT = "; left out, as another armature performs them: {}"

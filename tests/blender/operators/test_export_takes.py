@@ -82,7 +82,8 @@ def test_all_accepted_results_are_takes_of_one_file(
     assert current_action(accepted) == first
 
 
-def test_a_linked_scene_is_refused_in_words(accepted: bpy.types.Object, tmp_path: Path) -> None:
+@pytest.mark.usefixtures("accepted")
+def test_a_linked_scene_is_refused_in_words(tmp_path: Path) -> None:
     blend = tmp_path / "character.blend"
     bpy.data.libraries.write(str(blend), {bpy.context.scene}, fake_user=True)
     with bpy.data.libraries.load(str(blend), link=True) as (_, linked):
