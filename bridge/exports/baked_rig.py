@@ -17,6 +17,7 @@ from ...solver.arrays import FloatArray
 from ..accessors import armature_data, pose_of, present
 from ..armature import fcurves
 from ..armature.channels import channels, proper
+from .shapes import write_shapes
 from .skeleton import Skeleton
 
 _STILL = 1e-6  # of a bone's scale, which then has no keys
@@ -24,12 +25,13 @@ _STILL = 1e-6  # of a bone's scale, which then has no keys
 
 @dataclass(frozen=True)
 class BakedTake:
-    """Poses (T, B, 4, 4) of a skeleton's bones, from the bone to the object, at frames from
-    `first` on."""
+    """Poses (T, B, 4, 4) of a skeleton's bones, from the bone to the object, and values (T, K) of
+    shape keys, at frames from `first` on."""
 
     name: str
     first: int
     poses: FloatArray
+    shapes: FloatArray
 
     @property
     def last(self) -> int:
@@ -96,3 +98,4 @@ def _write(
         for channel, values in written.items():
             path = bone.path_from_id(channel)
             fcurves.write_channels(curves, path, frames, values, name)
+    write_shapes(rig, curves, frames, take.shapes)

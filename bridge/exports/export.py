@@ -7,6 +7,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import bpy
+import numpy as np
 
 from ...solver.data.faults import MissingPart, SeveralTakes
 from ..accessors import present
@@ -16,6 +17,7 @@ from ..rows.choices import FileFormat, RootMotion
 from .baked_rig import bake
 from .engines import CONVENTIONS, format_of
 from .placed_takes import frames_of, outline_for, place_takes
+from .shapes import drive_shapes, moving_shapes
 from .skin import Skin, copy_skin, skin_of
 from .writers import require_format, under_name, write
 
@@ -45,13 +47,16 @@ def export_takes(
     alone = len(takes) == 1 and not CONVENTIONS[options.engine].clean
     keeps = alone and frames_of(takes[0])[0] >= 0
     skin = skin_of(armature) if options.skin else Skin()
+    shaped = moving_shapes(skin.meshes)
     with scene_restored():
-        found = place_takes(armature, takes, options, pelvis, keeps_frames=keeps)
+        found = place_takes(armature, takes, options, pelvis, shaped, keeps_frames=keeps)
         before = data_blocks()
         try:
             rig = bake("Exported", found.skeleton, found.placed, found.takes)
             names = {rig: CONVENTIONS[options.engine].object or armature.name}
             copies = copy_skin(skin, armature, rig, found.from_armature)
+            moving = [copy for copy, mesh in copies.items() if mesh in shaped]
+            drive_shapes(rig, moving, np.concatenate([take.shapes for take in found.takes]))
             names |= {copy: mesh.name for copy, mesh in copies.items()}
             with _data_named(copies):
                 write(rig, names, found.takes, Path(path), options, keeps_frames=keeps)

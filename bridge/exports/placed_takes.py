@@ -19,6 +19,7 @@ from ..recipe.export import ExportOptions
 from ..rows.choices import FileFormat, RootMotion
 from .baked_rig import BakedTake
 from .engines import CONVENTIONS, format_of
+from .shapes import sample_shapes
 from .skeleton import Outline, Skeleton, outline, scale_of, skeleton
 
 _STILL = 1e-5  # Blender units, by which an object that rests may move
@@ -50,18 +51,21 @@ def place_takes(
     takes: Sequence[bpy.types.Action],
     options: ExportOptions,
     pelvis: str | None,
+    shaped: Sequence[bpy.types.Object],
     *,
     keeps_frames: bool,
 ) -> PlacedTakes:
-    """Evaluate takes and put them where the file has them; otherwise they begin at frame 0."""
+    """Evaluate takes and put them where the file has them; otherwise they begin at frame 0. shaped:
+    meshes whose shape keys go along."""
     convention, carries = CONVENTIONS[options.engine], options.root is RootMotion.ROOT_BONE
     found = outline_for(armature, options, pelvis)
-    poses = [_performed(armature, take) for take in takes]
+    performed_takes = [_performed(armature, take, shaped) for take in takes]
+    poses = [performed for performed, _ in performed_takes]
     space = _space(options, poses)
     from_armature = space.to_file @ space.at_rest
     made = skeleton(armature, found, from_armature)
     baked = []
-    for take, performed in zip(takes, poses, strict=True):
+    for take, (performed, shapes) in zip(takes, performed_takes, strict=True):
         path = None
         if pelvis is not None and options.root is not RootMotion.AS_IT_IS:
             rest = space.at_rest @ np.array(armature_data(armature).bones[pelvis].matrix_local)
@@ -71,7 +75,8 @@ def place_takes(
                 path = without_turns(path, rest)
         name = take.name + (convention.loop if take.use_cyclic else "")
         first = frames_of(take)[0] if keeps_frames else 0
-        baked.append(BakedTake(name, first, _placed(performed, found, made, space, path, carries)))
+        placed = _placed(performed, found, made, space, path, carries)
+        baked.append(BakedTake(name, first, placed, shapes))
     return PlacedTakes(made, tuple(baked), space.placed, from_armature)
 
 
@@ -128,11 +133,14 @@ def _space(options: ExportOptions, poses: Sequence[Poses]) -> _Space:
     return _Space(at_rest, file @ origin, undone)
 
 
-def _performed(armature: bpy.types.Object, take: bpy.types.Action) -> Poses:
-    """Poses at every whole frame of a take."""
+def _performed(
+    armature: bpy.types.Object, take: bpy.types.Action, shaped: Sequence[bpy.types.Object]
+) -> tuple[Poses, FloatArray]:
+    """Poses and meshes' shape keys at every whole frame of a take."""
     first, last = frames_of(take)
+    frames = np.arange(first, last + 1.0)
     with _performing(armature, take):
-        return sample(armature, np.arange(first, last + 1.0))
+        return sample(armature, frames), sample_shapes(shaped, frames)
 
 
 def frames_of(take: bpy.types.Action) -> tuple[int, int]:

@@ -11,6 +11,7 @@ from mathutils import Matrix
 
 from ...solver.arrays import FloatArray
 from ..accessors import armature_data, current_scene, present
+from .shapes import has_shapes
 
 _SOLID = ("MESH", "CURVE", "SURFACE", "FONT")  # types of objects that one sees
 
@@ -57,17 +58,12 @@ def copy_skin(
     for copy, mesh in meshes.items():
         mesh.transform(to_file @ places[copy], shape_keys=True)
         copy.data = mesh
+        _own_materials(copy)
         copy.constraints.clear()
         copy.parent = rig
         copy.matrix_parent_inverse = copy.matrix_basis = Matrix()
         _have_deform(copy, armature, rig)
     return copies
-
-
-def has_shapes(thing: bpy.types.Object) -> bool:
-    """Whether a mesh has shape keys beside the basis."""
-    keys = _mesh_of(thing).shape_keys
-    return keys is not None and len(keys.key_blocks) > 1
 
 
 def _copy(thing: bpy.types.Object, armature: bpy.types.Object) -> bpy.types.Object:
@@ -91,9 +87,19 @@ def _as_seen(copy: bpy.types.Object, graph: bpy.types.Depsgraph) -> bpy.types.Me
     Exporters would do it too late, when lengths are the file's, or not at all.
     """
     if has_shapes(copy):
-        return _mesh_of(copy).copy()
+        assert isinstance(copy.data, bpy.types.Mesh)
+        return copy.data.copy()
     seen = copy.evaluated_get(graph)
     return bpy.data.meshes.new_from_object(seen, preserve_all_data_layers=True, depsgraph=graph)
+
+
+def _own_materials(copy: bpy.types.Object) -> None:
+    """Hand its materials to its mesh: of an object with its own the FBX exporter writes one more
+    copy of the mesh, whose shape keys nothing animates."""
+    for slot in copy.material_slots:
+        material = slot.material
+        slot.link = "DATA"
+        slot.material = material
 
 
 def _have_deform(copy: bpy.types.Object, armature: bpy.types.Object, rig: bpy.types.Object) -> None:
@@ -135,8 +141,3 @@ def _unapplied(mesh: bpy.types.Object, armature: bpy.types.Object) -> tuple[str,
     deformers = _deformers(mesh, armature)
     others = (each for each in mesh.modifiers if each not in deformers)
     return tuple(each.name for each in others if each.show_viewport)
-
-
-def _mesh_of(thing: bpy.types.Object) -> bpy.types.Mesh:
-    assert isinstance(thing.data, bpy.types.Mesh)
-    return thing.data

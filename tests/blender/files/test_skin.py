@@ -210,3 +210,48 @@ def test_mesh_data_keep_their_names_in_the_file(form: FileFormat, tmp_path: Path
         FileFormat.USD: rb'def Mesh "([\w.]+)"',
     }[form]
     assert sorted(re.findall(pattern, written))[0] == b"BodyMesh"
+
+
+def smiling(body: bpy.types.Object, armature: bpy.types.Object) -> bpy.types.Object:
+    """A mesh with a shape key that has keys, one that a bone drives, and one that nothing moves."""
+    for name in ("Basis", "Smile", "Bulge", "Fat"):
+        key = body.shape_key_add(name=name)
+        for point in key.data:
+            point.co.z += 0.1 * (name != "Basis")
+    blocks = body.data.shape_keys.key_blocks
+    blocks["Fat"].value = 0.25
+    for frame, value in ((1, 0.0), (25, 1.0)):
+        blocks["Smile"].value = value
+        blocks["Smile"].keyframe_insert("value", frame=frame)
+    driver = blocks["Bulge"].driver_add("value").driver
+    driver.type = "SUM"
+    variable = driver.variables.new()
+    variable.type = "TRANSFORMS"
+    target = variable.targets[0]
+    target.id, target.bone_target = armature, rigs.MOVING[0]
+    target.transform_type, target.transform_space = "LOC_X", "WORLD_SPACE"
+    return body
+
+
+@pytest.mark.parametrize("form", FileFormat)
+@pytest.mark.parametrize("engine", [Engine.NONE, Engine.UNREAL])
+def test_shape_keys_play_in_the_file_as_they_did(
+    engine: Engine, form: FileFormat, tmp_path: Path
+) -> None:
+    armature = animated_rig()
+    body = smiling(skinned(armature), armature)
+    action, path = armature.animation_data.action, tmp_path / f"body{ENDINGS[form]}"
+    begins = 0 if engine is Engine.NONE else action.frame_range[0]
+    frames = [2, FRAME, 20]
+    expected = [at(frame, body) for frame in frames]
+    export_takes(armature, [action], path, ExportOptions(engine, form, skin=True))
+    assert len(body.data.shape_keys.animation_data.drivers) == 1
+    found = skin_in(path)
+    for frame, corners in zip(frames, expected, strict=True):
+        apart = np.linalg.norm(at(frame - begins, found)[:, None] - corners[None], axis=2)
+        assert apart.min(axis=0).max() < 1e-4
+
+
+def at(frame: float, body: bpy.types.Object) -> np.ndarray:
+    bpy.context.scene.frame_set(round(frame))
+    return shown(body)
