@@ -70,7 +70,9 @@ def drive_shapes(
 
 
 def _drive(block: bpy.types.ShapeKey, rig: bpy.types.Object, path: str) -> None:
-    driver = block.driver_add("value").driver
+    curve = block.driver_add("value")
+    assert isinstance(curve, bpy.types.FCurve)
+    driver = present(curve.driver)
     driver.type = "SUM"  # unlike an expression it needs no leave to run scripts
     target = driver.variables.new().targets[0]
     target.id, target.data_path = rig, path
