@@ -1,11 +1,13 @@
 """Wording of what is legal but hardly meant, told before a fit takes its seconds."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator, Sequence
 from math import isfinite
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...bridge.scene.moving_empties import LeftEmpty
 from ...solver.arrays import FloatArray
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import ChosenTake, Origin
@@ -14,6 +16,9 @@ from ...solver.doctor.finding import Finding
 from ...solver.doctor.repairs import UpAxis
 from .doctor_text import finding_sentence
 from .messages import length
+
+if TYPE_CHECKING:  # which Blender's own module is needed for, and batches do without
+    from ...bridge.scene.moving_empties import LeftEmpty
 
 # Body mass over squared stature, kg/m². Adults above 40 have obesity of the third class; of healthy
 # children the leanest have 13 (WHO).
