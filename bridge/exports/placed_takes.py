@@ -23,6 +23,7 @@ from .shapes import sample_shapes
 from .skeleton import Outline, Skeleton, outline, scale_of, skeleton
 
 _STILL = 1e-5  # Blender units, by which an object that rests may move
+_LONGEST = 63  # bytes of a name
 
 
 @dataclass(frozen=True)
@@ -73,11 +74,17 @@ def place_takes(
             path = way(performed.object_to_world @ hips, rest, steady=take.use_cyclic)
             if not carries:
                 path = without_turns(path, rest)
-        name = take.name + (convention.loop if take.use_cyclic else "")
+        name = _called(take.name, convention.loop if take.use_cyclic else "")
         first = frames_of(take)[0] if keeps_frames else 0
         placed = _placed(performed, found, made, space, path, carries)
         baked.append(BakedTake(name, first, placed, shapes))
     return PlacedTakes(made, tuple(baked), space.placed, from_armature)
+
+
+def _called(name: str, ending: str) -> str:
+    """A take's name with an ending; of a long name the end goes, as Blender would cut the ending
+    off instead."""
+    return name.encode()[: _LONGEST - len(ending)].decode(errors="ignore") + ending
 
 
 def outline_for(armature: bpy.types.Object, options: ExportOptions, pelvis: str | None) -> Outline:
