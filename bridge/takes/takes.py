@@ -21,6 +21,7 @@ from ..armature.fcurves import slot_identifier
 from ..armature.keys_digest import keys_digest
 from ..armature.played import adopt_strip, in_scene_time, strip_time
 from ..armature.traces_store import forget, put_by, take_up
+from ..fake_users import guard
 from ..hidden_texts import spans_text
 from ..properties.overridden_lists import linked_count
 from ..properties.settings import (
@@ -374,7 +375,10 @@ def look_again(armature: bpy.types.Object) -> bool:
             stale = EDIT_CHANGED
         elif kept.surfaces_key and surfaces_digest(edit, armature, surfaces) != kept.surfaces_key:
             stale = SURFACES_CHANGED
-        polished = kept.holds_polish or keys[take.action] != kept.own_key
+        edited = keys[take.action] != kept.own_key
+        polished = kept.holds_polish or edited
+        if edited and take.action.library is None:  # who works on a result means to keep it
+            guard(take.action)
         if (kept.stale, kept.polished) != (stale, polished):
             kept.stale, kept.polished = stale, polished
             new = True

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from types import SimpleNamespace
 from typing import ClassVar
 
@@ -43,6 +44,7 @@ from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.blender.helpers.actions import curves_of
+from hangtime.tests.blender.helpers.rows import reopen
 from hangtime.tests.blender.helpers.solids import add_row, make_box
 
 OPTIONS = ResultOptions(blend_in=3.0, blend_out=3.0)
@@ -165,6 +167,24 @@ def test_the_list_of_takes_leaves_the_recordings_name_out(armature: bpy.types.Ob
     first.hangtime.called = "soft landing"
     assert first.name == "soft landing"
     assert listed() == ["jump", "soft landing", "adapted 2"]
+
+
+def test_results_that_were_named_or_polished_stay_in_the_file(
+    armature: bpy.types.Object, tmp_path: Path
+) -> None:
+    take, name = current_action(armature), armature.name
+    recording = take.name
+    dropped, named, polished = (adapt(armature, 10, 20, up) for up in (0.1, 0.2, 0.3))
+    dropped.name = "of no use"
+    named.hangtime.called = "soft landing"
+    point = curves_of(armature, polished)[0].keyframe_points[0]
+    point.co.y += 0.1
+    look_again(armature)
+    show(armature, take)
+    kept = polished.name
+    reopen(tmp_path / "kept.blend")
+    found = {take.action.name for take in takes_of(bpy.data.objects[name])}
+    assert found == {recording, "soft landing", kept}
 
 
 def test_a_result_is_compared_with_what_it_was_made_from(armature: bpy.types.Object) -> None:
