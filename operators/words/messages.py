@@ -11,6 +11,7 @@ from ...solver.data.row_kinds import RowKind, Violation
 from ...solver.data.status import Status
 from .doctor_text import damage_sentence
 from .templates import (
+    AT_FRAME,
     AT_ITS_END,
     DAMAGED,
     MISSED,
@@ -133,6 +134,8 @@ class _Formatter(Formatter):
                 return value if value.endswith("?") else f"{value}."
             case "outcome":
                 return outcome(value, self._translate)
+            case "at":
+                return "" if value is None else self._translate(AT_FRAME).format(value)
             case "damages":
                 return _damages(value, self._translate)
             case "missed":

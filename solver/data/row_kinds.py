@@ -72,9 +72,11 @@ class RowKind(Enum):
 class Violation:
     """Worst violation of one constraint; name: the artist's, or a contact's or a phase's.
 
-    amount: in the kind's `reported_unit`.
+    amount: in the kind's `reported_unit`. frame: the scene's, where it is the worst; None where it
+    is not at one.
     """
 
     name: str
     kind: RowKind
     amount: float
+    frame: float | None = None

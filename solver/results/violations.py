@@ -14,6 +14,7 @@ from ..fitting.fit import Fit
 from ..optimisation.guards import Guard, in_the_way
 from ..stages.implicit import Adaptation
 from ..transcription.constraint import DenseViolation, dense_violation
+from .flight_summary import scene_frame
 
 MOST_LISTED = 3  # constraints that a failure names
 
@@ -88,24 +89,33 @@ def worst_constraints(
     ends = [phase.end for phase in phases[:-1]]
     names = [*owners, *(phase.name for phase in phases)]
     named = np.where(rows.owner >= 0, rows.owner, len(owners) + np.searchsorted(ends, rows.time))
-    found: dict[tuple[str, RowKind], float] = {}
+    found: dict[tuple[str, RowKind], tuple[float, float]] = {}  # and when, s
+    none = 0.0, 0.0
     left = np.abs(rows.violation())
     for kind in RowKind:
         mine = rows.kind == kind
         for i in np.unique(named[mine]):
-            worst = float(left[mine & (named == i)].max())
-            found[names[i], kind] = max(found.get((names[i], kind), 0.0), worst)
+            these = np.flatnonzero(mine & (named == i))
+            worst = these[left[these].argmax()]
+            here = float(left[worst]), float(rows.time[worst])
+            found[names[i], kind] = max(found.get((names[i], kind), none), here)
     for each in condition_violations(adaptation) if conditions is None else conditions:
-        found[each.name, each.kind] = max(found.get((each.name, each.kind), 0.0), each.amount)
+        before = found.get((each.name, each.kind), none)
+        found[each.name, each.kind] = max(before, (each.amount, each.time))
     ranked = sorted(
-        ((v / kind.tolerance, name, kind) for (name, kind), v in found.items()),
+        ((v / kind.tolerance, time, name, kind) for (name, kind), (v, time) in found.items()),
         key=lambda each: each[0],
         reverse=True,
     )
     weight = t.character.mass * STANDARD_GRAVITY
     return [
-        Violation(name, kind, kind.reported(share * kind.tolerance, weight))
-        for share, name, kind in ranked
+        Violation(
+            name,
+            kind,
+            kind.reported(share * kind.tolerance, weight),
+            scene_frame(adaptation.fit, time),
+        )
+        for share, time, name, kind in ranked
         if share >= least
     ]
 

@@ -22,6 +22,7 @@ DAMAGED = (
 )
 MORE_DAMAGES = " And {} more."
 
+AT_FRAME = " (frame {:.0f})"
 ANGLE_MISSED = "“{name}” is missed by {amount:.3g}°"
 AWAY = "“{name}” stays {amount:millimetres} from its place"
 AT_ITS_END = "{name} as far as its range goes"
@@ -39,7 +40,7 @@ MISSED = {  # of a constraint, by its type
     RowKind.PUSH: "“{name}” would have to pull with {amount:.3g} body weights",
     RowKind.FRICTION: "“{name}” slips: {amount:.3g} body weights beyond its friction",
     RowKind.PEAK: "“{name}” is exceeded by {amount:.3g} body weights",
-    RowKind.SOLID: "{name} stays in by {amount:millimetres}",
-    RowKind.RANGE: "{name} {amount:.3g}° beyond its range",
+    RowKind.SOLID: "{name} stays in by {amount:millimetres}{frame:at}",
+    RowKind.RANGE: "{name} {amount:.3g}° beyond its range{frame:at}",
     RowKind.TORQUE: "“{name}” needs {amount:.3g} N·m more than its limit",
 }

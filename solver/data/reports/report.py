@@ -208,8 +208,13 @@ def as_json(report: Report) -> Json:
 def _items(record: object) -> Mapping[str, object]:
     """Keys and values of a record."""
     match record:
-        case Violation(name, kind, amount):
-            return {"name": name, "violation": amount, "unit": kind.reported_unit}
+        case Violation(name, kind, amount, frame):
+            return {
+                "name": name,
+                "violation": amount,
+                "unit": kind.reported_unit,
+                "frame": frame,
+            }
         case ConstraintReport():
             return {
                 "name": record.name,

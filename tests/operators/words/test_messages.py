@@ -194,6 +194,12 @@ def test_every_kind_of_violation_has_words(kind: RowKind) -> None:
     assert "{" not in words
 
 
+def test_where_a_limb_stays_in_something_is_told() -> None:
+    deep = Violation("Left foot in Roof", RowKind.SOLID, 118.0, 203.4)
+    words = sentence(NoSolution(Status.NO_BODY, (deep,)))
+    assert "Left foot in Roof stays in by 11.8 cm (frame 203)" in words
+
+
 def test_support_of_which_nothing_is_known_is_told_at_once() -> None:
     box = UnseenSupport(3.0, 9.0, (SupportBox((0.3, 0.3, 0.1), (0.0, 0.0, 0.0), 0.0),))
     bare = [UnseenSupport(20.0, 31.0), UnseenSupport(40.0, 55.0)]

@@ -148,7 +148,10 @@ def test_a_spoilt_motion_is_reported_so() -> None:
     assert bad.status is Status.STALLED
     parts = (bad.between_nodes.ground, bad.between_nodes.flight)
     assert max(part.force_rms_bw for part in parts if part is not None) > 0.1
-    assert RowKind.BALANCE in {each.kind for each in worst_constraints(spoilt, PROBLEM)}
+    fallen = next(v for v in worst_constraints(spoilt, PROBLEM) if v.kind is RowKind.BALANCE)
+    span = solved.motion.duration * solved.fit.performance.recording.rate
+    off = fallen.frame - float(solved.fit.performance.recording.frames[0]) - 0.5 * span
+    assert abs(off) < 0.2 * span  # where the bulge is; knots are not even
     assert worst_constraints(solved, PROBLEM) == []
     assert "No motion was found" in as_text(bad)
 
