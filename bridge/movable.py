@@ -40,8 +40,9 @@ def movers(thing: bpy.types.Object) -> list[bpy.types.Object]:
 
 
 def _is_driven(thing: bpy.types.Object) -> bool:
+    data = thing.animation_data  # which stays when all of it was removed
     return (
-        thing.animation_data is not None
+        (data is not None and bool(data.action or len(data.drivers) or len(data.nla_tracks)))
         or bool(len(thing.constraints))
         or thing.rigid_body is not None
         or thing.parent_type not in ("OBJECT", "")  # a bone's or a vertex's movement

@@ -60,7 +60,7 @@ def copy_skin(
         copy.data = mesh
         _own_materials(copy)
         copy.constraints.clear()
-        copy.parent = rig
+        copy.parent, copy.parent_type = rig, "OBJECT"
         copy.matrix_parent_inverse = copy.matrix_basis = Matrix()
         _have_deform(copy, armature, rig)
     return copies
@@ -70,7 +70,7 @@ def _copy(thing: bpy.types.Object, armature: bpy.types.Object) -> bpy.types.Obje
     """A copy of a mesh's object where it is, in sight, with a modifier for the armature."""
     copy = thing.copy()
     copy.animation_data_clear()
-    copy.hide_viewport = False
+    copy.hide_viewport = copy.hide_select = copy.hide_render = False
     if copy.parent_type == "ARMATURE":
         copy.parent_type = "OBJECT"
     if not _deformers(copy, armature):

@@ -168,7 +168,7 @@ def under_name(block: Any, name: str, blocks: Any) -> Iterator[None]:
         yield
         return
     if other is not None:
-        other.name = f"{name} (set aside)"
+        other.name = f"(set aside) {name}"  # of a long name the end is cut off
     block.name = name
     try:
         yield

@@ -13,7 +13,7 @@ import bpy
 from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.problem import MassTable
 from ...solver.data.solver_options import ShapeSource
-from ..accessors import attached, called, present
+from ..accessors import attached, called
 from ..fake_users import guard
 from ..rows.finding import CLASSES as FINDING_CLASSES
 from ..rows.finding import HangtimeFinding
@@ -334,7 +334,7 @@ def _get_called(made: HangtimeAction) -> str:
 
 
 def _set_called(made: HangtimeAction, to: str) -> None:
-    action = present(made.id_data)
+    action = cast(bpy.types.Action, made.id_data)
     if to not in ("", _get_called(made)) and action.is_editable:  # a linked one keeps its name
         action.name = to
         if made.own_key:  # who names a result means to keep it

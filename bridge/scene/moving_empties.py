@@ -23,7 +23,7 @@ from ..properties.settings import HangtimeSettings
 from ..properties.stances import follow_moving, may_mark, stance_frames
 from ..rows.phases import listed
 from ..rows.protocols import ContactRow
-from .seen import Showing, seen_at
+from .seen import Showing, seen_at, simulate
 
 INSTANTS = 9  # of a stance, at which its empties are looked at
 FELT = 0.01  # m; a foot that is off by more is seen to slide on what the empty hangs on
@@ -68,6 +68,7 @@ def take_places(settings: HangtimeSettings, showing: Showing) -> Incremental[tup
     if not marked:
         return ()
     frames = np.unique([each.frames for each in marked])
+    yield from simulate([each.empty for each in marked], frames[-1], showing)
     look = partial(_places, [each.empty for each in marked])
     seen = np.concatenate((yield from in_slices(frames, look, showing)))
     paths = [seen[np.searchsorted(frames, each.frames), i] for i, each in enumerate(marked)]

@@ -15,6 +15,7 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ..accessors import current_scene
+from ..action_slots import all_curves
 from ..armature.incremental import Incremental, in_slices
 from ..armature.poses import evaluated
 from ..movable import movers
@@ -61,7 +62,12 @@ def simulate(
 
 
 def _is_simulated(thing: bpy.types.Object) -> bool:
-    return thing.rigid_body is not None and thing.rigid_body.type == "ACTIVE"
+    body, data = thing.rigid_body, thing.animation_data
+    if body is None or body.type != "ACTIVE":
+        return False
+    action = None if data is None else data.action
+    keyed = action is not None and any("rigid_body" in c.data_path for c in all_curves(action))
+    return keyed or (body.enabled and not body.kinematic)
 
 
 def _step(objects: Sequence[bpy.types.Object], frames: FloatArray) -> None:

@@ -12,11 +12,12 @@ from zlib import crc32
 import bpy
 import numpy as np
 
+from ...solver.arrays import FloatArray
 from ..accessors import current_scene
 from ..action_slots import all_curves
 from ..armature.keys_digest import keys_digest
 from ..armature.poses import frames_per_second, metres_per_unit
-from ..movable import movers
+from ..movable import may_move, movers
 from ..properties.settings import HangtimeSettings
 from .members import objects_of
 
@@ -28,6 +29,7 @@ _DIGITS = 5  # Blender units, and of factors; less is the same place
 # Relative, of clocks and sizes. NTSC's rates are 1e-3 from whole ones, and are meant; clips round
 # their frame time by half of that.
 _SAME = 5e-4
+_STILL = 1e-4  # m, and of a turn's sines; an armature that has moved by less stands where it was
 
 OTHER_RATE = "The scene plays {:.5g} frames a second, and this was made for {:.5g}"
 OTHER_SIZE = "The armature is {:.4g} times as large as this was made for, by its scale or the unit"
@@ -38,27 +40,28 @@ ELSEWHERE = "The armature, or what it hangs on, was moved among the surfaces"
 class Conditions:
     """Of what a result's physics depends on beside keys, settings and surfaces.
 
-    rate: frames a second. metres: of a unit of the armature's own space. place: digest of where the
-    armature stands, and of what it hangs on.
+    rate: frames a second. metres: of a unit of the armature's own space. place: (12,) the
+    armature's, lengths in m; nothing where keys, drivers, constraints or what it hangs on move it.
     """
 
     rate: float
     metres: float
-    place: str
+    place: tuple[float, ...]
 
     @staticmethod
     def of(armature: bpy.types.Object) -> Conditions:
         """What they are now."""
         scene = current_scene()
+        metres = metres_per_unit(scene)
         scale = float(armature.matrix_world.median_scale)
-        return Conditions(
-            frames_per_second(scene), scale * metres_per_unit(scene), _stands(armature)
-        )
+        place = () if _is_moved(armature) else tuple((metres * _matrix(armature)).ravel().tolist())
+        return Conditions(frames_per_second(scene), scale * metres, place)
 
     @staticmethod
     def read(text: str) -> Conditions:
         """As `as_text` wrote them."""
-        return Conditions(**json.loads(text))
+        found = json.loads(text)
+        return Conditions(found["rate"], found["metres"], tuple(found["place"]))
 
     def as_text(self) -> str:
         return json.dumps(asdict(self))
@@ -72,13 +75,26 @@ class Conditions:
             return OTHER_RATE.format(self.rate, before.rate)
         if not isclose(self.metres, before.metres, rel_tol=_SAME):
             return OTHER_SIZE.format(self.metres / before.metres)
-        return ELSEWHERE if among_surfaces and self.place != before.place else ""
+        told = among_surfaces and bool(self.place) and bool(before.place)
+        moved = told and not np.allclose(self.place, before.place, rtol=0.0, atol=_STILL)
+        return ELSEWHERE if moved else ""
 
 
-def _stands(armature: bpy.types.Object) -> str:
-    """Of an armature's place but for its own keys, which are now of one take, now of another."""
-    others = [_movement(each) for each in movers(armature) if each != armature]
-    return str(crc32(repr((_movement(armature)[2:], others)).encode()))
+def _matrix(thing: bpy.types.Object) -> FloatArray:
+    return np.array(thing.matrix_world, float)[:3]
+
+
+def _is_moved(armature: bpy.types.Object) -> bool:
+    """Whether an armature's place is another at other frames, or with another take on show."""
+    data, parent = armature.animation_data, armature.parent
+    if len(armature.constraints) or (parent is not None and may_move(parent)):
+        return True
+    if data is None:
+        return False
+    strips = [strip for track in data.nla_tracks for strip in track.strips]
+    actions = [each for each in (data.action, *(s.action for s in strips)) if each is not None]
+    curves = (*data.drivers, *(curve for each in actions for curve in all_curves(each)))
+    return any(curve.data_path in _PLACED_BY for curve in curves)
 
 
 def surfaces_digest(

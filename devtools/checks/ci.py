@@ -180,7 +180,9 @@ def take_over(clone: Path) -> None:
     CACHE.mkdir(exist_ok=True)
     for made in (clone / CACHE.name).glob("*"):
         if not (CACHE / made.name).exists():
-            shutil.move(made, CACHE / made.name)
+            part = CACHE / f"{made.name}.part"  # which nobody takes for whole, if this is ended
+            shutil.move(made, part)
+            part.rename(CACHE / made.name)
 
 
 def run(check: Check, folder: Path) -> CheckRun:

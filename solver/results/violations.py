@@ -97,8 +97,8 @@ def worst_constraints(
         for i in np.unique(named[mine]):
             these = np.flatnonzero(mine & (named == i))
             worst = these[left[these].argmax()]
-            here = float(left[worst]), float(rows.time[worst])
-            found[names[i], kind] = max(found.get((names[i], kind), none), here)
+            missed = float(left[worst]), float(rows.time[worst])
+            found[names[i], kind] = max(found.get((names[i], kind), none), missed)
     for each in condition_violations(adaptation) if conditions is None else conditions:
         before = found.get((each.name, each.kind), none)
         found[each.name, each.kind] = max(before, (each.amount, each.time))

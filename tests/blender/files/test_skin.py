@@ -127,6 +127,34 @@ def test_a_mesh_that_its_parent_deforms_goes_along_without_a_modifier(
     assert apart.min(axis=0).max() < 1e-4
 
 
+@pytest.mark.parametrize("form", FileFormat)
+@pytest.mark.parametrize("how", ["it hangs on a bone", "it cannot be selected nor rendered"])
+def test_a_skinned_mesh_goes_along_wherever_it_hangs(
+    how: str, form: FileFormat, tmp_path: Path
+) -> None:
+    armature = animated_rig()
+    body = skinned(armature)
+    bpy.context.scene.frame_set(FRAME)
+    expected = shown(body)
+    if how == "it hangs on a bone":  # as it is at rest
+        armature.data.pose_position = "REST"
+        bpy.context.view_layer.update()
+        place = body.matrix_world.copy()
+        body.parent, body.parent_type = armature, "BONE"
+        body.parent_bone = armature.data.bones[-1].name
+        body.matrix_world = place
+        armature.data.pose_position = "POSE"
+    else:
+        body.hide_select = body.hide_render = True
+    path = tmp_path / f"body{ENDINGS[form]}"
+    options = ExportOptions(format=form, skin=True)
+    export_takes(armature, [armature.animation_data.action], path, options)
+    found = skin_in(path)
+    bpy.context.scene.frame_set(FRAME)
+    apart = np.linalg.norm(shown(found)[:, None] - expected[None], axis=2)
+    assert apart.min(axis=0).max() < 1e-4
+
+
 def test_what_is_no_mesh_or_hangs_on_a_bone_is_left_out_and_named(tmp_path: Path) -> None:
     """An armature that deforms them does not keep the meshes from being written."""
     armature = animated_rig()

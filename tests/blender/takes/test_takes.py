@@ -151,6 +151,21 @@ def test_a_result_is_stale_after_its_armature_has_moved_among_surfaces(
         assert (free.hangtime.stale, among.hangtime.stale) == ("", stale)
 
 
+def test_where_a_take_that_keys_the_armature_puts_it_tells_nothing_of_another(
+    armature: bpy.types.Object,
+) -> None:
+    add_row(armature, make_box("Crate", (3.0, 0.0, 0.0)))
+    result, take = adapt(armature, 10, 20, 0.2), current_action(armature)
+    walk = take.copy()
+    show(armature, walk)
+    for frame, along in ((1, 0.0), (20, 2.0)):
+        armature.location.x = along
+        armature.keyframe_insert("location", frame=frame)
+    bpy.context.scene.frame_set(20)
+    look_again(armature)
+    assert result.hangtime.stale == ""
+
+
 def test_the_list_of_takes_leaves_the_recordings_name_out(armature: bpy.types.Object) -> None:
     recording = current_action(armature)
     recording.name = "jump"

@@ -16,6 +16,7 @@ from hangtime.tests.blender.helpers.solids import make_box
 
 SPEED = 0.01  # m a frame
 NEAR = 1e-4
+FALLS = 60  # frames, before the stance begins
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 
@@ -125,3 +126,23 @@ def test_adapt_names_them(
     assert "“Left toe 2”" in told
     assert "placed by empties that move on" in told
     np.testing.assert_allclose(shifts(analysed.hangtime)[:, 1], 0.1, atol=NEAR)
+
+
+def test_a_body_that_was_never_played_takes_them_where_it_falls(analysed: bpy.types.Object) -> None:
+    settings, scene = analysed.hangtime, bpy.context.scene
+    begins = int(start(settings))
+    scene.frame_set(begins - FALLS)
+    box = make_box("Truck", (0.0, 0.0, 50.0))
+    bpy.ops.rigidbody.object_add(type="ACTIVE")
+    cache = scene.rigidbody_world.point_cache
+    cache.frame_start, cache.frame_end = begins - FALLS, begins + FALLS
+    bpy.context.view_layer.objects.active = analysed
+    for row in landing(settings):
+        settings.active_contact = settings.contacts.find(row.name)
+        bpy.ops.hangtime.place_by_empty()
+        row.empty.parent, row.empty.matrix_parent_inverse = box, box.matrix_world.inverted()
+    bpy.context.view_layer.update()
+    taken(analysed)
+    seconds = FALLS * scene.render.fps_base / scene.render.fps
+    fallen = -0.5 * 9.81 * seconds**2
+    assert shifts(settings)[:, 2] == pytest.approx(fallen, rel=0.15)
