@@ -16,7 +16,9 @@ from ...solver.data.recording import PoseTrack
 from ...solver.data.reports.keys import BlendReport
 from ...solver.numerics.rotations import rotation_matrix, rotation_vector
 
-_SEAM_FRAMES = 3  # of which the speed at a seam is taken
+# Over which the speed at a seam is taken: short against a step, and of 120 Hz seven frames, so that
+# one that jumps in the recording does not throw the blend.
+_SEAM_S = 0.05
 
 
 @dataclass(frozen=True)
@@ -35,18 +37,22 @@ class SeamOffset:
 def seam_offset(motion: PoseTrack, take: PoseTrack) -> SeamOffset:
     """Offset at the first of some frames (T,), T >= 1, the seam's; the next ones lead away from it
     into the motion. Rates are those that lead out of it."""
+    count = min(len(motion.frames), len(take.frames))
+    motion, take = rows(motion, slice(count)), rows(take, slice(count))
     places = motion.root_head - take.root_head
     turns = rotation_vector(motion.rotations @ np.swapaxes(take.rotations, -1, -2))
-    return SeamOffset(places[0], -_rate(places), turns[0], -_rate(turns))
+    away = np.abs(motion.frames - motion.frames[0])
+    return SeamOffset(places[0], -_rate(places, away), turns[0], -_rate(turns, away))
 
 
-def _rate(values: FloatArray) -> FloatArray:
-    """Change a frame at the first of values (T, ...), to second order where there are three."""
+def _rate(values: FloatArray, away: FloatArray) -> FloatArray:
+    """Change a frame at the first of values (T, ...), `away` (T,) frames from it: of the parabola
+    that is nearest to them."""
     if len(values) == 1:
         return np.zeros_like(values[0])
-    if len(values) == 2:
-        return np.asarray(values[1] - values[0])
-    return np.asarray(-1.5 * values[0] + 2.0 * values[1] - 0.5 * values[2])
+    powers = np.vander(away, min(len(away), 3), increasing=True)
+    flat = values.reshape(len(values), -1)
+    return np.asarray((np.linalg.pinv(powers)[1] @ flat).reshape(values.shape[1:]))
 
 
 def faded(take: PoseTrack, seam: SeamOffset, away: FloatArray, length: float) -> PoseTrack:
@@ -116,14 +122,14 @@ def frames_until(track: PoseTrack, frame: float) -> PoseTrack:
     return rows(track, track.frames <= frame)
 
 
-def beginning(track: PoseTrack) -> PoseTrack:
-    """The first frames, of which the speed at a seam is taken."""
-    return rows(track, slice(_SEAM_FRAMES))
+def beginning(track: PoseTrack, rate: float) -> PoseTrack:
+    """The first frames, of which the speed at a seam is taken; three at least. rate: frames/s."""
+    return rows(track, slice(max(3, 1 + round(rate * _SEAM_S))))
 
 
-def backwards(track: PoseTrack) -> PoseTrack:
+def backwards(track: PoseTrack, rate: float) -> PoseTrack:
     """The last frames, the last one first."""
-    return beginning(rows(track, slice(None, None, -1)))
+    return beginning(rows(track, slice(None, None, -1)), rate)
 
 
 def joined(tracks: list[PoseTrack]) -> PoseTrack:

@@ -329,11 +329,11 @@ def _tracks(
     if len(span.after):
         before = frames_until(take, span.last)
         before = _carried(before, plan.moved, np.ones(len(before.frames)))
-        offset = seam_offset(backwards(motion.track), backwards(before))
+        offset = seam_offset(backwards(motion.track, rate), backwards(before, rate))
         after = faded(after, offset, after.frames - span.last, span.blend_out)
         shown = joined([rows(motion.track, slice(-1, None)), after])
         blends.append(blend_report(shown, goal, into=False, rate=rate))
-    into = list(_blended_in(take, span, motion.track))
+    into = list(_blended_in(take, span, motion.track, rate))
     if into:
         shown = joined([*into, rows(motion.track, slice(1))])
         goal = frames_until(take, span.first)
@@ -372,10 +372,13 @@ def _carried(track: PoseTrack, move: StanceMove | None, shares: FloatArray) -> P
     return track if move is None else carried(track, move, shares)
 
 
-def _blended_in(take: PoseTrack, span: ResultSpan, motion: PoseTrack) -> Iterator[PoseTrack]:
+def _blended_in(
+    take: PoseTrack, span: ResultSpan, motion: PoseTrack, rate: float
+) -> Iterator[PoseTrack]:
     before = rows(take, take.frames < span.first)
     if len(before.frames):
-        offset = seam_offset(beginning(motion), beginning(frames_from(take, span.first)))
+        adapted = frames_from(take, span.first)
+        offset = seam_offset(beginning(motion, rate), beginning(adapted, rate))
         yield faded(before, offset, span.first - before.frames, span.blend_in)
 
 
