@@ -57,11 +57,12 @@ def in_slices(
     frames: FloatArray,
     look: Callable[[FloatArray], T],
     showing: Callable[[], AbstractContextManager[object]] = nullcontext,
+    fewest: int = FEWEST_FRAMES,
 ) -> Incremental[list[T]]:
     """What `look` finds at frames (T,), a few a slice. showing: entered for each slice, such as to
     let an armature perform another action meanwhile."""
     found: list[T] = []
-    at, count = 0, FEWEST_FRAMES
+    at, count = 0, fewest
     while at < len(frames):
         count = len(frames) if _nobody_waits.get() else count
         began = perf_counter()
@@ -71,7 +72,7 @@ def in_slices(
         at += count
         ended = perf_counter()
         wanted = min(SLICE_S + GOING_BACK * (ended - looked), LONGEST_SLICE_S)
-        count = max(FEWEST_FRAMES, int(count * min(wanted / (ended - began), 8.0)))
+        count = max(fewest, int(count * min(wanted / (ended - began), 8.0)))
         yield min(at / len(frames), 1.0)
     return found
 

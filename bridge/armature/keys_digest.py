@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Set
 from zlib import crc32
 
 import bpy
@@ -26,7 +27,7 @@ def keys_digest(action: bpy.types.Action) -> str:
         found = _keys(curve, found)
         found = crc32(curve.extrapolation.encode(), found)
         for modifier in curve.modifiers:
-            found = crc32(repr(_stored(modifier)).encode(), found)
+            found = crc32(repr(stored(modifier)).encode(), found)
     return str(found)
 
 
@@ -46,15 +47,18 @@ def _keys(curve: bpy.types.FCurve, found: int) -> int:
     return found
 
 
-def _stored(modifier: bpy.types.bpy_struct) -> list[object]:
-    """What a modifier, or a point of its envelope, holds."""
+def stored(thing: bpy.types.bpy_struct, but: Set[str] = frozenset()) -> list[object]:
+    """What something holds, and the rows of its lists, such as a modifier and the points of its
+    envelope; of other things their names. but: for these properties."""
     found: list[object] = []
-    for each in modifier.bl_rna.properties:
-        value = getattr(modifier, each.identifier)
-        if each.identifier in _NOT_STORED:
+    for each in thing.bl_rna.properties:
+        if each.identifier in _NOT_STORED or each.identifier in but:
             continue
+        value = getattr(thing, each.identifier)
         if each.type == "COLLECTION":
-            found += [_stored(row) for row in value]
+            found += [stored(row) for row in value]
+        elif each.type == "POINTER":
+            found.append(getattr(value, "name", None))
         else:
             found.append(tuple(value) if getattr(each, "is_array", False) else value)
     return found

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cache, partial
 
 import bpy
 import numpy as np
@@ -18,12 +18,15 @@ from ..armature.incremental import Incremental, in_slices
 from ..armature.poses import Poses, metres_per_unit, sample
 from .choice import Group, all_responses, felt_controls, used_groups
 from .driven import candidates
-from .followed import telling_frames
+from .followed import acting, rig_digest, telling_frames
 from .inverse import Inverse, Inverted
 from .needed import Effects, effects_at
 from .posing import Posing
 from .responses import Freedom, Responses
 from .targets import move_of_pelvis, moved_bases, parents_of, targets_of
+
+_REMEMBERED = 8  # rigs, of a shot's characters
+_Tried = tuple[int, tuple[str, ...], str, bytes, bytes]
 
 
 @dataclass(frozen=True)
@@ -72,12 +75,38 @@ def found_controls(
 ) -> Incremental[ControlRig]:
     """The controls of bodies, the first of which is the pelvis, at frames (T,).
 
-    Raises NoControls.
+    They are remembered: to try them takes seconds, and each solve asks. Raises NoControls.
     """
-    at = yield from telling_frames(armature, frames, showing)
+    states = yield from acting(armature, frames, showing)
+    with showing():
+        made = rig_digest(armature)
+    key = armature.session_uid, bodies, made, frames.tobytes(), states.tobytes()
+    remembered = _remembered()
+    if key not in remembered:
+        at = telling_frames(frames, states)
+        found = yield from _tried(armature, bodies, at, showing)
+        while len(remembered) >= _REMEMBERED:
+            del remembered[next(iter(remembered))]
+        remembered[key] = found
+    return replace(remembered[key], armature=armature)
+
+
+@cache
+def _remembered() -> dict[_Tried, ControlRig]:
+    """The rigs that were tried last, by what they were, with what."""
+    return {}
+
+
+def _tried(
+    armature: bpy.types.Object,
+    bodies: tuple[str, ...],
+    at: FloatArray,
+    showing: Callable[[], AbstractContextManager[object]],
+) -> Incremental[ControlRig]:
+    """The controls of bodies, tried at frames (L,). Raises NoControls."""
     names = candidates(armature, bodies)
     felt: set[str] = set()
-    found = yield from in_slices(at, partial(_felt, armature, names, bodies), showing)
+    found = yield from in_slices(at, partial(_felt, armature, names, bodies), showing, 1)
     for part in found:
         felt.update(part)
     names = [name for name in names if name in felt]
@@ -85,9 +114,9 @@ def found_controls(
         raise NoControls(bodies)
     posing = Posing(armature, names, bodies)
     with showing():
-        parents = parents_of(armature, sample(armature, frames[:1]), bodies)
+        parents = parents_of(armature, sample(armature, at[:1]), bodies)
     yield None
-    looked = yield from in_slices(at, partial(_looks, posing, parents), showing)
+    looked = yield from in_slices(at, partial(_looks, posing, parents), showing, 1)
     looks = [look for part in looked for look in part]
     groups = used_groups(posing, [(look.responses, look.effects) for look in looks])
     if not groups:  # they move something, but nothing that hangs together
@@ -165,7 +194,7 @@ def control_poses(
         with posing.kept():
             return [inverse.solve(index[float(frame)]) for frame in frames]
 
-    parts = yield from in_slices(track.frames, look, showing)
+    parts = yield from in_slices(track.frames, look, showing, 1)
     solved = [each for part in parts for each in part]
 
     def look_again(frames: FloatArray) -> None:

@@ -1,31 +1,34 @@
-"""What acts in a rig at a frame: switches between kinds of controls may be thrown on the way."""
+"""What acts in a rig at a frame: switches between kinds of controls may be thrown on the way; and
+whether the rig is made as it was."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, nullcontext
+from zlib import crc32
 
 import bpy
 import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
-from ..accessors import current_scene, pose_of
+from ..accessors import armature_data, current_action, current_scene, pose_of, present
 from ..armature.incremental import Incremental, in_slices
+from ..armature.keys_digest import keys_digest, stored
 from ..armature.poses import evaluated
 from .driven import constraints_of
 
 LOOKS = 3  # frames at which a rig is looked at, beside one for each state of its switches
 FAINT = 1e-3  # influence, below which a switch is off
+# How much a constraint acts, and misses, goes with the frame that is shown.
+_OF_FRAME = frozenset({"influence", "error_location", "error_rotation"})
+_RESTS = ("matrix_local", "use_local_location", "use_inherit_rotation", "inherit_scale")
+_POSES = ("lock_location", "lock_rotation", "lock_scale", "custom_shape", "ik_stretch")
+_CHAINS = ("use_ik_limit_x", "use_ik_limit_y", "use_ik_limit_z", "lock_ik_x", "lock_ik_y")
 
 
-def telling_frames(
-    armature: bpy.types.Object,
-    frames: FloatArray,
-    showing: Callable[[], AbstractContextManager[object]] = nullcontext,
-) -> Incremental[FloatArray]:
+def telling_frames(frames: FloatArray, states: BoolArray) -> FloatArray:
     """Frames (L,) of those (T,) that show all that acts in a rig at any: some that are spread
-    evenly, and the middle one of each state of its switches."""
-    states = yield from acting(armature, frames, showing)
+    evenly, and the middle one of each state of its switches. states: (T, N), as of `acting`."""
     at = np.linspace(0, len(frames) - 1, LOOKS).round().astype(int).tolist()
     for state in np.unique(states, axis=0):
         rows = np.flatnonzero((states == state).all(axis=1))
@@ -70,3 +73,30 @@ class Influences:
         posed = self._armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
         bones = pose_of(posed).bones
         return np.array([bones[name].constraints[index].influence for name, index in self._indices])
+
+
+def rig_digest(armature: bpy.types.Object) -> str:
+    """A number for how a rig's bones, constraints and drivers are made and its take is keyed;
+    another where something differs that tells which bones move which. How much each constraint acts
+    is not in it."""
+    action, found = current_action(armature), 0
+    for part in _parts(armature):
+        found = crc32(repr(part).encode(), found)
+    return f"{found} {'' if action is None else keys_digest(action)}"
+
+
+def _parts(armature: bpy.types.Object) -> Iterator[object]:
+    for rest in armature_data(armature).bones:
+        yield rest.name, rest.parent and rest.parent.name, _values(rest, _RESTS)
+    for bone in pose_of(armature).bones:
+        yield _values(bone, _POSES + _CHAINS)
+        for constraint in bone.constraints:
+            yield constraint.type, stored(constraint, _OF_FRAME)
+    data = armature.animation_data
+    for curve in () if data is None else data.drivers:
+        yield curve.data_path, curve.array_index, curve.mute, stored(present(curve.driver))
+
+
+def _values(thing: bpy.types.bpy_struct, names: tuple[str, ...]) -> list[object]:
+    values = (getattr(thing, name) for name in names)
+    return [tuple(each) if hasattr(each, "__len__") else each for each in values]

@@ -8,18 +8,18 @@ as the reference: Engl, Hanke and Neubauer, Regularization of Inverse Problems, 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ...solver.arrays import BoolArray, FloatArray
+from ...solver.arrays import BoolArray, FloatArray, IntArray
 from ...solver.numerics.rotations import rotation_matrix, rotation_vector
 from ..armature.channels import proper
 from .followed import FAINT, Influences
 from .needed import LEVER
 from .posing import Posed, Posing
-from .responses import Dof, Freedom, Responses, apart, measured
+from .responses import Columns, Dof, Freedom, Responses, apart, measured
 from .targets import Targets, move_of_pelvis, moved_bases
 
 STEPS = 30
@@ -61,11 +61,6 @@ class Inverted:
 
 _SIZE = 6
 _COLUMN = {Freedom.TURN: 0, Freedom.SHIFT: 3, Freedom.SIZE: _SIZE}  # of offsets (C, 7)
-
-
-def _place(dof: Dof) -> tuple[int, int]:
-    """Of a degree of freedom in offsets (C, 7)."""
-    return dof.control, _COLUMN[dof.freedom] + dof.axis
 
 
 @dataclass(frozen=True)
@@ -154,6 +149,12 @@ def _ranks(responses: Responses) -> list[list[int]]:
     return found
 
 
+def _places(dofs: Sequence[Dof]) -> tuple[IntArray, IntArray]:
+    """Of dofs in offsets (C, 7)."""
+    controls = [dof.control for dof in dofs]
+    return np.array(controls), np.array([_COLUMN[dof.freedom] + dof.axis for dof in dofs])
+
+
 class Inverse:
     """Solves frames one after the other; each begins with what the one before needed."""
 
@@ -189,17 +190,21 @@ class Inverse:
         beside their bodies as they were there; where that leads nowhere, from others."""
         animated = self._begun(t)
         starts = [self._offsets, _changed(self._offsets, self._change)]
-        start, size = self._nearest(animated, starts + [self._reference] * self._as_taken, t)
-        if size > FAR and self._met is not None:
+        starts += [self._reference] * self._as_taken
+        looks = [self._look(animated, start, t) for start in starts]
+        nearest = int(np.argmin([look.cost for look in looks]))
+        start, look = starts[nearest], looks[nearest]
+        if look.size > FAR and self._met is not None:
             every = np.ones(len(self._met.bodies), dtype=bool)
             beside = self._beside(animated, start, t, every, self._met)
-            start, _ = self._nearest(animated, [start, beside], t)
-        offsets, best = self._solved(animated, start, t)
+            then = self._look(animated, beside, t)
+            start, look = (beside, then) if then.cost < look.cost else (start, look)
+        offsets, best = self._solved(animated, start, look, t)
         enough = _enough(self._left)
         for start in self._other_starts(animated, offsets, best, t):
             if best.size <= enough:
                 break
-            other = self._solved(animated, start, t)
+            other = self._solved(animated, start, self._look(animated, start, t), t)
             if other[1].cost < best.cost:
                 offsets, best = other
         met = best.size < LOST
@@ -216,22 +221,17 @@ class Inverse:
         animated, shown = self._posing.bases(), self._posing.look()
         felt = self._try_where_switched(animated)
         move = move_of_pelvis(shown, self._targets, t)
-        self._as_taken = bool(np.linalg.norm(self._lacks(move @ shown.bodies, t)) < SUSPECT)
+        moved = move @ shown.bodies
+        lacks = self._lacks(moved[:, :3, 3], proper(moved[:, :3, :3]), t)
+        self._as_taken = bool(np.linalg.norm(lacks) < SUSPECT)
         carried = _differing(animated, moved_bases(shown, move))
         self._reference = np.where((self._carries & felt)[:, None], carried, 0.0)
         self._weights = np.zeros_like(self._reference)
         lengths = {Freedom.SHIFT: self._targets.unit[t], Freedom.SIZE: SIZES / BESIDE}
-        for dof in (dof for dof in self._responses.dofs if felt[dof.control]):
-            self._weights[_place(dof)] = BESIDE * lengths.get(dof.freedom, 1.0)
+        each = np.array([lengths.get(dof.freedom, 1.0) for dof in self._responses.dofs])
+        places = _places(self._responses.dofs)
+        self._weights[places] = BESIDE * each * felt[places[0]]
         return animated
-
-    def _nearest(
-        self, animated: FloatArray, starts: list[FloatArray], t: int
-    ) -> tuple[FloatArray, float]:
-        """The one of some first guesses that is off by the least, and by how much (m)."""
-        looks = [self._look(animated, start, t) for start in starts]
-        best = int(np.argmin([look.cost for look in looks]))
-        return starts[best], looks[best].size
 
     def unmet(self) -> list[int]:
         """Indices of the frames that were left with more than the next one, the last one first."""
@@ -249,7 +249,8 @@ class Inverse:
         animated = self._begun(t)
         every = np.ones(len(then.bodies), dtype=bool)
         starts = after, self._beside(animated, after, t, every, then)
-        found = [self._solved(animated, start, t) for start in starts]
+        looks = [self._look(animated, start, t) for start in starts]
+        found = [self._solved(animated, *each, t) for each in zip(starts, looks, strict=True)]
         offsets, best = min(found, key=lambda each: each[1].cost)
         if best.size >= self._needed[t][1]:
             return None
@@ -330,18 +331,19 @@ class Inverse:
         return self._felt
 
     def _solved(
-        self, animated: FloatArray, offsets: FloatArray, t: int
+        self, animated: FloatArray, offsets: FloatArray, best: _Look, t: int
     ) -> tuple[FloatArray, _Look]:
-        """Offsets from the animated bases, from a first guess, and what they do."""
-        best = self._look(animated, offsets, t)
+        """Offsets from the animated bases, from a first guess, and what they do. best: what that
+        does."""
         fresh, damping, slow, idle = False, DAMPING, 0, 0
         for _ in range(STEPS):
             size = max(best.size, FINE)
-            moved, step, reach = self._stepped(offsets, best, t, damping)
+            columns = self._responses.columns(best.posed, best.bases)
+            moved, step, reach = self._stepped(offsets, best.error, columns, t, damping)
             if (fresh or best.size < SLIGHT) and reach < STILL:
                 break
             after = self._look(animated, moved, t)
-            self._responses = self._responses.corrected(best.posed, best.bases, step, after.posed)
+            self._responses = self._responses.corrected(columns, best.posed, step, after.posed)
             left = after.size
             gained = (best.cost**2 - after.cost**2) / (2.0 * size)
             nearer = gained > 0.0
@@ -369,40 +371,36 @@ class Inverse:
         self.tries += 1
         posed = self._posing.look()
         beside = self._weights * _difference(offsets, self._reference)
-        return _Look(bases, posed, np.append(self._lacks(posed.bodies, t), beside))
+        lacks = self._lacks(posed.bodies[:, :3, 3], posed.body_turns, t)
+        return _Look(bases, posed, np.append(lacks, beside))
 
-    def _lacks(self, bodies: FloatArray, t: int) -> FloatArray:
-        """(6 B,) m, of bodies (B, 4, 4): heads, then turns times LEVER."""
+    def _lacks(self, heads: FloatArray, turns: FloatArray, t: int) -> FloatArray:
+        """(6 B,) m, of bodies with heads (B, 3) and turns (B, 3, 3): heads, then turns times
+        LEVER."""
         wanted = self._targets
-        off = wanted.unit[t] * (wanted.heads[t] - bodies[:, :3, 3])
-        now = np.swapaxes(proper(bodies[:, :3, :3]), 1, 2)
-        turned = LEVER * rotation_vector(wanted.rotations[t] @ now)
+        off = wanted.unit[t] * (wanted.heads[t] - heads)
+        turned = LEVER * rotation_vector(wanted.rotations[t] @ np.swapaxes(turns, 1, 2))
         return np.concatenate([off.ravel(), turned.ravel()])
 
     def _stepped(
-        self, offsets: FloatArray, at: _Look, t: int, damping: float
+        self, offsets: FloatArray, error: FloatArray, columns: Columns, t: int, damping: float
     ) -> tuple[FloatArray, FloatArray, float]:
-        """Offsets after a damped least-squares step; the step; and how far it moves any body."""
-        turns, shifts = self._responses.columns(at.posed, at.bases)
-        count = len(turns)
-        unit = self._targets.unit[t]
-        rows = np.concatenate(
-            [unit * shifts.reshape(count, -1), LEVER * turns.reshape(count, -1)], axis=1
-        )
+        """Offsets after a damped least-squares step; the step; and how far it moves any body.
+        columns: of the dofs there; error: as of a look."""
+        count = len(columns.turns)
+        shifts = self._targets.unit[t] * columns.shifts.reshape(count, -1)
+        places = _places(self._responses.dofs)
         pull = np.zeros((count, *offsets.shape))
-        for d, dof in enumerate(self._responses.dofs):
-            pull[d][_place(dof)] = self._weights[_place(dof)]
-        weighted = np.concatenate([rows, pull.reshape(count, -1)], axis=1)
-        sizes = np.linalg.norm(weighted, axis=1)
-        every = weighted
-        weighted = weighted / np.where(sizes > 0.0, sizes, 1.0)[:, None]
+        pull[np.arange(count), *places] = self._weights[places]
+        turns = LEVER * columns.turns.reshape(count, -1)
+        every = np.concatenate([shifts, turns, pull.reshape(count, -1)], axis=1)
+        sizes = np.linalg.norm(every, axis=1)
+        weighted = every / np.where(sizes > 0.0, sizes, 1.0)[:, None]
         normal = weighted @ weighted.T + damping * np.eye(count)
-        step = np.linalg.solve(normal, weighted @ at.error) / np.where(sizes > 0.0, sizes, np.inf)
+        step = np.linalg.solve(normal, weighted @ error) / np.where(sizes > 0.0, sizes, np.inf)
         changes = np.zeros_like(offsets)
-        for dof, amount in zip(self._responses.dofs, step, strict=True):
-            changes[_place(dof)] = amount
+        changes[places] = step
         turned = np.linalg.norm(changes[:, :3], axis=1, keepdims=True)
         changes[:, :3] *= np.minimum(1.0, LONGEST / np.maximum(turned, 1e-12))
         changes[:, _SIZE] = np.clip(changes[:, _SIZE], -MOST, MOST)
-        taken = [changes[_place(dof)] for dof in self._responses.dofs]
-        return _changed(offsets, changes), np.array(taken), float(np.abs(step @ every).max())
+        return _changed(offsets, changes), changes[places], float(np.abs(step @ every).max())

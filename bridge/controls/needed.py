@@ -52,10 +52,10 @@ def effects_at(
 ) -> Effects:
     """Effects at a pose of the controls. parents: of bodies, -1 for none. unit: m in one of the
     armature's."""
-    turns, shifts = responses.columns(posed, bases)
+    columns = responses.columns(posed, bases)
     lengths = np.array([unit if dof.shifts else 1.0 for dof in responses.dofs])[:, None]
-    count = len(turns)
-    done = [unit * shifts.reshape(count, -1), LEVER * turns.reshape(count, -1)]
+    count = len(lengths)
+    done = [unit * columns.shifts.reshape(count, -1), LEVER * columns.turns.reshape(count, -1)]
     return Effects(
         np.concatenate(done, axis=1) / lengths, _joined(unit * posed.bodies[:, :3, 3], parents)
     )

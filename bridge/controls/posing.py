@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 
 import bpy
 import numpy as np
@@ -12,6 +13,7 @@ from mathutils import Matrix
 
 from ...solver.arrays import FloatArray
 from ..accessors import armature_data, current_scene, pose_of, present
+from ..armature.channels import proper
 from ..armature.poses import evaluated
 from .driven import constrained
 
@@ -30,6 +32,21 @@ class Posed:
     frames: FloatArray
     places: FloatArray
     bodies: FloatArray
+
+    @cached_property
+    def frame_axes(self) -> FloatArray:
+        """(C, 3, 3) rotations of the frames."""
+        return proper(self.frames[:, :3, :3])
+
+    @cached_property
+    def place_axes(self) -> FloatArray:
+        """(C, 3, 3) rotations of the places."""
+        return proper(self.places[:, :3, :3])
+
+    @cached_property
+    def body_turns(self) -> FloatArray:
+        """(B, 3, 3) rotations of the bodies."""
+        return proper(self.bodies[:, :3, :3])
 
 
 @contextmanager

@@ -68,11 +68,20 @@ class Dof:
 
 def axes_of(dofs: Sequence[Dof], posed: Posed, bases: FloatArray) -> FloatArray:
     """(D, 3, 3) axes of the responses, in the armature's space. bases: (C, 4, 4)."""
-    places, frames = (proper(each[:, :3, :3]) for each in (posed.places, posed.frames))
-    own = frames @ proper(bases[:, :3, :3])
+    own = posed.frame_axes @ proper(bases[:, :3, :3])
     controls = [dof.control for dof in dofs]
     shifts = np.array([dof.shifts for dof in dofs])[:, None, None]
-    return np.where(shifts, places[controls], own[controls])
+    return np.where(shifts, posed.place_axes[controls], own[controls])
+
+
+@dataclass(frozen=True)
+class Columns:
+    """What dofs do at a pose: turns and shifts (D, B, 3) in the armature's space; and the axes
+    (D, 3, 3) there in which responses are kept."""
+
+    axes: FloatArray
+    turns: FloatArray
+    shifts: FloatArray
 
 
 @dataclass(frozen=True)
@@ -89,30 +98,31 @@ class Responses:
     follow: BoolArray
     moved: BoolArray
 
-    def columns(self, posed: Posed, bases: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Turns and shifts (D, B, 3) in the armature's space, at another pose."""
-        to_axes = np.swapaxes(axes_of(self.dofs, posed, bases), 1, 2)
+    def columns(self, posed: Posed, bases: FloatArray) -> Columns:
+        """What the dofs do at another pose."""
+        axes = axes_of(self.dofs, posed, bases)
+        to_axes = np.swapaxes(axes, 1, 2)
         turns = self.turns @ to_axes
-        return turns, self.shifts @ to_axes + _rigid(self.dofs, turns, posed)
+        return Columns(axes, turns, self.shifts @ to_axes + _rigid(self.dofs, turns, posed))
 
     def corrected(
-        self, before: Posed, bases: FloatArray, step: FloatArray, after: Posed
+        self, columns: Columns, before: Posed, step: FloatArray, after: Posed
     ) -> Responses:
-        """Such that a step (D,) from pose bases (C, 4, 4) does what it was seen to do, by the
-        least change of what follows (Schubert, Modification of a Quasi-Newton Method for Nonlinear
-        Equations with a Sparse Jacobian, 1970)."""
-        turns, shifts = self.columns(before, bases)
-        turned = rotation_vector(_turned(before.bodies, after.bodies))
+        """Such that a step (D,) from a pose, where these have those columns, does what it was seen
+        to do, by the least change of what follows (Schubert, Modification of a Quasi-Newton Method
+        for Nonlinear Equations with a Sparse Jacobian, 1970)."""
+        turned = rotation_vector(_turned(before, after))
         apart = after.bodies[:, :3, 3] - before.bodies[:, :3, 3]
         own = step[:, None] * self.follow
         squares = (own**2).sum(0)
         share = (own / np.where(squares > 0.0, squares, 1.0))[..., None]
-        turns_more = share * (turned - np.tensordot(step, turns, 1))
-        shifts_more = share * (apart - np.tensordot(step, shifts, 1))
+        turns_more = share * (turned - np.tensordot(step, columns.turns, 1))
+        shifts_more = share * (apart - np.tensordot(step, columns.shifts, 1))
         shifts_more -= _rigid(self.dofs, turns_more, before)
-        axes = axes_of(self.dofs, before, bases)
         return replace(
-            self, turns=self.turns + turns_more @ axes, shifts=self.shifts + shifts_more @ axes
+            self,
+            turns=self.turns + turns_more @ columns.axes,
+            shifts=self.shifts + shifts_more @ columns.axes,
         )
 
     def part(self, chosen: Sequence[int], controls: Sequence[int]) -> Responses:
@@ -166,7 +176,7 @@ def measured(
         for dof, _ in group:
             posing.pose(dof.control, dof.applied(bases[dof.control], dof.step))
         after = posing.look()
-        turned = rotation_vector(_turned(before.bodies, after.bodies))
+        turned = rotation_vector(_turned(before, after))
         apart = after.bodies[:, :3, 3] - before.bodies[:, :3, 3]
         change = np.abs(after.controls - before.controls).max((1, 2))
         for dof, of in group:
@@ -191,9 +201,9 @@ def measured(
     )
 
 
-def _turned(before: FloatArray, after: FloatArray) -> FloatArray:
-    """(B, 3, 3) turns between poses."""
-    return proper(after[:, :3, :3]) @ np.swapaxes(proper(before[:, :3, :3]), 1, 2)
+def _turned(before: Posed, after: Posed) -> FloatArray:
+    """(B, 3, 3) turns of the bodies between poses."""
+    return after.body_turns @ np.swapaxes(before.body_turns, 1, 2)
 
 
 def apart(responses: Responses) -> list[list[tuple[Dof, BoolArray]]]:

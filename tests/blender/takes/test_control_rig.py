@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -21,6 +22,7 @@ from hangtime.bridge.controls.control_rig import (
 )
 from hangtime.bridge.controls.driven import is_driven
 from hangtime.bridge.controls.needed import LEVER, Effects, needed
+from hangtime.bridge.controls.posing import Posed, Posing
 from hangtime.bridge.controls.refusals import unled
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.takes.plan import AdaptedMotion
@@ -248,6 +250,39 @@ def test_feet_are_carried_along_however_their_locations_count(local: bool) -> No
     bpy.context.view_layer.update()
     after = np.array([rig.pose.bones[bone.name].head for bone in before.bones])
     np.testing.assert_allclose(after, before.heads[0] @ turn.T + shift, atol=1e-5)
+
+
+def test_controls_are_tried_once_and_anew_where_the_rig_was_changed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rig, frames = ik_rig(), np.array([1.0])
+    rig.pose.bones["hips"].keyframe_insert("location", frame=1)
+    before = record(rig, frames)
+    bodies = tuple(before.bones[segment.bone].name for segment in map_anatomy(before.bones))
+    looks = Counter[str]()
+    look = Posing.look
+
+    def counted(posing: Posing) -> Posed:
+        looks["all"] += 1
+        return look(posing)
+
+    monkeypatch.setattr(Posing, "look", counted)
+    found = complete(found_controls(rig, bodies, frames))
+    assert "stand.L" in found.controls
+    assert "shin.L" not in found.controls
+    tried = looks["all"]
+    assert tried > len(found.controls)
+    assert complete(found_controls(rig, bodies, frames)).controls == found.controls
+    assert looks["all"] == tried
+    rig.pose.bones["shin.L"].constraints[0].mute = True
+    changed = complete(found_controls(rig, bodies, frames))
+    assert "shin.L" in changed.controls
+    assert "knee_pole.L" not in changed.controls
+    rig.pose.bones["shin.L"].constraints[0].mute = False
+    rig.pose.bones["hips"].keyframe_insert("rotation_quaternion", frame=1)
+    tried = looks["all"]
+    complete(found_controls(rig, bodies, frames))
+    assert looks["all"] > tried
 
 
 def test_bones_that_follow_another_armature_are_refused_before_a_solve(

@@ -27,10 +27,10 @@ def test_a_step_corrects_what_it_showed_and_nothing_that_does_not_follow() -> No
         step = np.eye(len(found.dofs))[rise] * SHIFT
         posing.pose(1, found.dofs[rise].applied(bases[1], SHIFT))
         after = posing.look()
-    corrected = found.corrected(before, bases, step, after)
+    corrected = found.corrected(found.columns(before, bases), before, step, after)
     seen = after.bodies[:, :3, 3] - before.bodies[:, :3, 3]
     told, first = (
-        np.tensordot(step, each.columns(before, bases)[1], 1) for each in (corrected, found)
+        np.tensordot(step, each.columns(before, bases).shifts, 1) for each in (corrected, found)
     )
     assert np.linalg.norm(first[1] - seen[1]) > 1e-4  # the leg does not bend in proportion
     np.testing.assert_allclose(told[1], seen[1], atol=1e-6)
