@@ -37,6 +37,7 @@ LONGEST, MOST = 0.5, 0.1  # rad of one step, and change of size
 # is as many times what the frame before was left with, for what a rig cannot do it cannot for long.
 SUSPECT, LOST = 0.002, 0.005
 MORE_LEFT = 1.5
+SAME, AGREEING = 1e-3, 2  # share of the cost, and other starts that lead there: it is the least
 # m of error up to which what was tried before is good enough to end by: it is off by the share by
 # which the rig answers otherwise here, some hundredths, of an error that is small itself.
 SLIGHT = 0.002
@@ -200,11 +201,12 @@ class Inverse:
             then = self._look(animated, beside, t)
             start, look = (beside, then) if then.cost < look.cost else (start, look)
         offsets, best = self._solved(animated, start, look, t)
-        enough = _enough(self._left)
+        enough, agreeing = _enough(self._left), 0
         for start in self._other_starts(animated, offsets, best, t):
-            if best.size <= enough:
+            if best.size <= enough or agreeing == AGREEING:
                 break
             other = self._solved(animated, start, self._look(animated, start, t), t)
+            agreeing += abs(other[1].cost - best.cost) < SAME * best.cost
             if other[1].cost < best.cost:
                 offsets, best = other
         met = best.size < LOST
@@ -242,8 +244,11 @@ class Inverse:
     def solve_again(self, t: int) -> Inverted | None:
         """Solve the frame of index t, which was not met, once more from what the next one needed,
         and from there with all controls beside their bodies as then: where a limb is straight, what
-        was before does not tell which way it bends afterwards. None where that is no nearer."""
-        after, _ = self._needed[t + 1]
+        was before does not tell which way it bends afterwards. None where that is no nearer, or
+        where that one is left with about as much."""
+        after, left = self._needed[t + 1]
+        if self._needed[t][1] <= MORE_LEFT * left:
+            return None
         self._posing.go_to(float(self._targets.frames[t + 1]))
         then = self._look(self._posing.bases(), after, t + 1).posed
         animated = self._begun(t)
