@@ -1,7 +1,8 @@
 """Everything that must hold before a change lands, from a clean machine: .ci/run.
 
 Standard library only. Each check is a process of its own. Two run at once, one on each core, except
-those that use both or whose figures a neighbour would spoil. The last line adds up all tests.
+those that all others need. No figure that a neighbour would spoil is judged here. The last line
+adds up all tests.
 """
 
 from __future__ import annotations
@@ -74,6 +75,11 @@ def shared_checks() -> Iterator[Check]:
     # in its glTF add-on.
     others = f"{in_blender} --ignore={operators}"
     yield suite("4.2", f"{operators} {quick}", f"{others} {quick}", zipped)
+    # The first makes the sandbox of both.
+    rig = "window --scenes rig_scrubs rig_exports --tell --reports {reports}/window-rig"
+    window = "window --without-rig --blender 4.5 --tell --reports {reports}/window --out {out}"
+    by_hand = (f"{rig} --blender 4.5 --out {{out}}", window)
+    yield Check("the window, driven by mouse and keys", by_hand)
     for name, chosen in (("solver", "tests/solver"), ("rest", without)):
         yield Check(f"slow tests, {name}", (tests("4.5", f"slow-{name}", f"{chosen} -m slow"),))
     # What 5.0 changed 5.2 has, too: there the extension does its main job.
@@ -89,8 +95,6 @@ def shared_checks() -> Iterator[Check]:
     yield measure("the hostile campaign", "campaign --cases 1000")
     yield measure("force plates", f"validate {plates()} --no-curves")
     yield measure("the benchmark", "benchmark --quick")
-    rig = "window --scenes rig_scrubs rig_exports --tell --reports {reports}/window-rig"
-    yield measure("the window's sandbox, and a generated rig in the window", rig)
     yield measure("what is repaired is fitted", "doctor --fits --quick")
     yield measure("skeletons of all conventions", "rigs --quick")
     yield Check("lint", ("lint --blender 4.5",))
@@ -130,11 +134,9 @@ def main() -> int:
         clone = folder / "clone"
         # Completed before several would do so at once.
         shared = Check("the environment", ("test --blender 4.5 --help",))
-        window = "window --without-rig --blender 4.5 --tell --reports {reports}/window --out {out}"
-        last = [Check("the window, driven by mouse and keys", (window,))]
         outcomes = [told(run(standalone(clone), folder))]
         take_over(clone)
-        outcomes += run_all([shared], list(shared_checks()), last, folder)
+        outcomes += run_all([shared], list(shared_checks()), folder)
         for failed in (outcome for outcome in outcomes if not outcome.passed):
             print(f"\nfailed: {failed.name}; it ended so:")
             print(*failed.text.splitlines()[-RECALLED:], sep="\n")
@@ -142,17 +144,13 @@ def main() -> int:
     return int(skipped or not all(outcome.passed for outcome in outcomes))
 
 
-def run_all(
-    first: list[Check], shared: list[Check], last: list[Check], folder: Path
-) -> Iterator[CheckRun]:
-    """Outcomes, told as they come: `first` and `last` one by one, `shared` side by side."""
+def run_all(first: list[Check], shared: list[Check], folder: Path) -> Iterator[CheckRun]:
+    """Outcomes, told as they come: `first` one by one, then `shared` side by side."""
     for check in first:
         yield told(run(check, folder))
     with ThreadPoolExecutor(CORES) as pool:
         for pending in as_completed([pool.submit(run, check, folder) for check in shared]):
             yield told(pending.result())
-        for check in last:
-            yield told(run(check, folder))
 
 
 def told(outcome: CheckRun) -> CheckRun:
