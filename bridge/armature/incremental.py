@@ -60,7 +60,8 @@ def in_slices(
     fewest: int = FEWEST_FRAMES,
 ) -> Incremental[list[T]]:
     """What `look` finds at frames (T,), a few a slice. showing: entered for each slice, such as to
-    let an armature perform another action meanwhile."""
+    let an armature perform another action meanwhile. fewest: a slice, where each frame takes long
+    and it takes no longer to go back."""
     found: list[T] = []
     at, count = 0, fewest
     while at < len(frames):
@@ -72,7 +73,9 @@ def in_slices(
         at += count
         ended = perf_counter()
         wanted = min(SLICE_S + GOING_BACK * (ended - looked), LONGEST_SLICE_S)
-        count = max(fewest, int(count * min(wanted / (ended - began), 8.0)))
+        in_time = int(count * min(wanted / (ended - began), 8.0))
+        to_go_back = round(count * (ended - looked) / (looked - began))
+        count = max(fewest, in_time, min(to_go_back, FEWEST_FRAMES))
         yield min(at / len(frames), 1.0)
     return found
 
