@@ -21,7 +21,7 @@ from ...solver.skeleton.bind_pose import bind_frames
 from ..environment.virtual_environment import ROOT
 from ..figures.limits import WorstFigure
 from ..recordings import HELD, read
-from .damages import DAMAGES
+from .combined import ALONE_AND_COMBINED
 from .fits import LONGEST, FittedClip, fits, one_of_each_kind
 from .limits import figures, fit_figures
 from .measure import Examined, examine, examine_clean, without_own_faults
@@ -126,7 +126,7 @@ def first_part(name: str, recording: Recording) -> Recording:
 def examine_all(name: str, recording: Recording) -> list[Examined]:
     """A clip as it is, and, without faults of its own, with each damage."""
     part = first_part(name, recording)
-    damages = [each for each in DAMAGES if each.possible(part)]
+    damages = [each for each in ALONE_AND_COMBINED if each.possible(part)]
     found = [examine_clean(name, recording), *(examine(name, part, each) for each in damages)]
     missed = ", ".join(each.damage for each in found if not each.found) or "nothing"
     print(f"{name}: missed {missed}", flush=True)

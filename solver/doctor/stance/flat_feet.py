@@ -18,6 +18,7 @@ FLAT = 0.06  # m/s, by which both ends of a foot that stands flat differ
 FLAT_SPEED = 0.3  # m/s, along the floor; a foot that is lifted or set down goes faster
 FLAT_SPEED_UP = 0.45  # m/s, up or down; who falls is as slow for 0.09 s, which is no stance
 LEAST_STANCE = 0.1  # s
+ROUNDS = 8  # of narrowing the speeds to the half that agree best
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class FlatFoot:
 def flat_feet(recording: Recording, figure: Figure) -> Iterator[FlatFoot]:
     """The left one, then the right one. recording: in its right size and time."""
     for side in SIDES:
-        ends = _ends(recording, figure, side)
+        ends = foot_ends(recording, figure, side)
         ankle, ball = (np.gradient(track, recording.times, axis=0) for track in ends)
         velocity = 0.5 * (ankle + ball)
         flat = np.linalg.norm(ankle - ball, axis=1) < FLAT
@@ -74,7 +75,7 @@ class FlatSamples:
         return FlatSamples(times[order], places[order], velocities[order])
 
 
-def _ends(recording: Recording, figure: Figure, side: Side) -> tuple[FloatArray, FloatArray]:
+def foot_ends(recording: Recording, figure: Figure, side: Side) -> tuple[FloatArray, FloatArray]:
     """(T, 3) m each, of a foot's ankle and ball; of one without toes of its bone's end."""
     foot, toe = figure.sided[Part.FOOT, side], figure.sided.get((Part.TOE, side))
     ankle = recording.heads[:, foot]
@@ -82,3 +83,14 @@ def _ends(recording: Recording, figure: Figure, side: Side) -> tuple[FloatArray,
         return ankle, recording.heads[:, toe]
     bone = recording.bones[foot]
     return ankle, ankle + recording.rotations[:, foot] @ (bone.rotation.T @ (bone.tail - bone.head))
+
+
+def agreed(speeds: FloatArray) -> tuple[FloatArray, float]:
+    """The speed (D,), m/s, about which the half of some (N, D) that agree best are, and how far, in
+    the median, all differ from it."""
+    middle = np.median(speeds, axis=0)
+    for _ in range(ROUNDS):
+        apart = np.linalg.norm(speeds - middle, axis=1)
+        nearest = np.argsort(apart, kind="stable")[: (len(speeds) + 1) // 2]
+        middle = np.median(speeds[nearest], axis=0)
+    return middle, float(np.median(np.linalg.norm(speeds - middle, axis=1)))

@@ -20,13 +20,13 @@ from ..figure import Figure
 from ..finding import Finding, FindingKind
 from ..local_poses import runs
 from ..repairs import Repairs
-from .flat_feet import FLAT_SPEED, FlatSamples
+from .flat_feet import FLAT_SPEED, FlatSamples, agreed
+from .trembling_feet import drift_of_stances
 
 FLOOR_OFF = 0.03  # m, from the world's 0
 TOP_OFF = 0.05  # m, likewise, of a box: how thick soles are is told by a floor at 0 alone
 LOW = 0.03  # m above the floor: a foot that stands
 STANDING_SPEED_UP = 0.15  # m/s, up or down, of a foot that stands
-ROUNDS = 8  # of narrowing the speeds to the half that agree best
 DRIFT = 0.12  # m/s; feet that roll over in runs leave 0.1
 FLAT_FAST = 0.8 * FLAT_SPEED  # m/s, of which feet that stand flat no longer tell
 FLAT_DRIFT = 0.04  # m/s, of feet that stand flat; honest ones leave 0.014
@@ -110,7 +110,8 @@ def _sinking(performance: Performance) -> Finding | None:
 
 def find_sliding(performance: Performance, figure: Figure) -> Finding | None:
     """Feet that in all stances slide the same way at the same speed: the whole body drifts. By the
-    lowest points of feet, or by feet that stand flat, which tell less of a drift.
+    lowest points of feet, by feet that stand flat, which tell less of a drift, or first, where feet
+    tremble, by whole stances.
 
     performance: as seen from what it stands on, in its right size and time.
     """
@@ -120,7 +121,9 @@ def find_sliding(performance: Performance, figure: Figure) -> Finding | None:
         for each in (FlatSamples.of(performance.recording, figure), standing(performance))
     )
     least = max(LEAST_STANCE * rate, share, LEAST_STANDING)
-    told = _drift(flat, FLAT_DRIFT) if len(flat.speeds) >= least else None
+    told = drift_of_stances(performance.recording, figure)
+    if told is None and len(flat.speeds) >= least:
+        told = _drift(flat, FLAT_DRIFT)
     if told is None and len(lowest.speeds) >= least:
         slowest = FLAT_FAST if len(flat.speeds) >= least else DRIFT
         told = _drift(lowest, slowest)
@@ -160,7 +163,7 @@ class _Slides:
 
 def _drift(slides: _Slides, slowest: float) -> tuple[float, float] | None:
     """M/s, along the floor, that nearly all speeds have, and each stance."""
-    middle, differ = _agreed(slides.speeds)
+    middle, differ = agreed(slides.speeds)
     speed = float(np.linalg.norm(middle))
     if speed < slowest or differ > ALIKE * speed or not _is_steady(slides.speeds):
         return None
@@ -177,7 +180,7 @@ def find_rise(recording: Recording, figure: Figure) -> Finding | None:
     if len(feet.times) < LEAST_LEVEL * recording.rate:
         return None
     speeds = feet.velocities[:, 2:]
-    (rise,), differ = _agreed(speeds)
+    (rise,), differ = agreed(speeds)
     if abs(rise) < RISE or differ > ALIKE_RISE * abs(rise) or not _is_steady(speeds):
         return None
     heights = feet.places[:, 2]
@@ -192,17 +195,6 @@ def _is_steady(speeds: FloatArray) -> bool:
     middle = np.median(speeds, axis=0)
     apart = [np.median(half, axis=0) - middle for half in np.array_split(speeds, 2)]
     return bool(max(np.linalg.norm(apart, axis=1)) < STEADY * np.linalg.norm(middle))
-
-
-def _agreed(speeds: FloatArray) -> tuple[FloatArray, float]:
-    """The speed (D,), m/s, about which the half of some (N, D) that agree best are, and how far, in
-    the median, all differ from it."""
-    middle = np.median(speeds, axis=0)
-    for _ in range(ROUNDS):
-        apart = np.linalg.norm(speeds - middle, axis=1)
-        nearest = np.argsort(apart, kind="stable")[: (len(speeds) + 1) // 2]
-        middle = np.median(speeds[nearest], axis=0)
-    return middle, float(np.median(np.linalg.norm(speeds - middle, axis=1)))
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hangtime.devtools.doctor.combined import both
 from hangtime.devtools.doctor.damages import (
     Damage,
     in_place,
@@ -121,6 +122,28 @@ def test_noise_of_a_runs_short_stances_is_no_drift(seed: int) -> None:
     kinds = [finding.kind for finding in diagnose(damaged.recording).findings]
     assert FindingKind.NOISE in kinds
     assert FindingKind.SLIDING not in kinds
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [JUMP, "fair1_jumping.bvh"])
+@pytest.mark.parametrize("speed", [0.1, 0.2, 0.5])
+def test_drift_is_told_in_spite_of_the_noise_of_video(name: str, speed: float) -> None:
+    """What smoothing leaves of it moves feet faster, to and fro."""
+    damage = both(noisy(3.0, 1.0), sliding(speed))
+    damaged = damage.of(load_recording(name).window(2.0, 500.0))
+    diagnosis = diagnose(damaged.recording)
+    assert {FindingKind.NOISE, FindingKind.SLIDING} <= {f.kind for f in diagnosis.findings}
+    assert diagnosis.repairs.drift == pytest.approx((0.8 * speed, 0.6 * speed), abs=0.06)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("noise", [(3.0, 1.0), (6.0, 2.0)])
+def test_noise_alone_is_no_drift(noise: tuple[float, float], seed: int) -> None:
+    damaged = noisy(*noise).do(jump(), np.random.default_rng(seed))
+    diagnosis = diagnose(damaged.recording)
+    assert FindingKind.NOISE in {f.kind for f in diagnosis.findings}
+    assert diagnosis.repairs.drift == (0.0, 0.0)
 
 
 @pytest.mark.slow
