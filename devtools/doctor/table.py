@@ -19,9 +19,9 @@ machine with 2 cores) and wrote this page; `DIR/figures.json` has every number.
 NOTES = """
 The clips of `examples/recordings` (the first 5 s, from where the rest pose ends that some begin
 with) are damaged in the ways of `devtools/doctor/damages.py`, diagnosed and repaired. *Found*:
-named rightly, of two damages together both. *Off*: rms distance of all joints from the undamaged clip at the same frame, before
-and after all remedies that the doctor offers, its mistaken ones too; of a clock that is wrong no
-joint is off. *Scale off*: of the factor of time or
+named rightly, of two damages both. *Off*: rms distance of all joints from the undamaged clip at
+the same frame, before and after all remedies that the doctor offers, its mistaken ones too; of a
+clock that is wrong no joint is off. *Scale off*: of the factor of time or
 size, median and worst over the clips where it was found. One clip has a fault of its own, whose
 finding is no false alarm: the hips of rokoko_jesse_dance leap in frames 8 to 13, and the feet are
 4 to 16 cm above the floor from then on; it is mended before it is damaged. Limbs are exchanged from

@@ -134,16 +134,16 @@ def _lines(
             since = times[part] - times[part].mean()
             way = middle[part, :2] - middle[part, :2].mean(axis=0)
             line, cubic = (np.polyfit(since, way, degree) for degree in (1, 3))
-            off, off_cubic = (
+            off_line, off_cubic = (
                 float(np.mean((way - np.vander(since, len(fit)) @ fit) ** 2))
                 for fit in (line, cubic)
             )
-            lines.append((float(np.ptp(since)), line[0], off, off_cubic))
+            lines.append((float(np.ptp(since)), line[0], off_line, off_cubic))
             standing[part] = True
     if not lines:
         return None
-    columns = map(np.array, zip(*lines, strict=True))
-    return _Stances(*columns, float(standing.sum()) / recording.rate)
+    seconds, speeds, off, off_cubics = map(np.array, zip(*lines, strict=True))
+    return _Stances(seconds, speeds, off, off_cubics, float(standing.sum()) / recording.rate)
 
 
 def _long(stands: BoolArray, rate: float) -> Iterator[slice]:
