@@ -185,7 +185,8 @@ def build_character(
 def stature(recording: Recording, chosen: Mapping[str, str] | None = None) -> float:
     """The height of a recording's character, m, which takes a tenth of what the character does.
 
-    Raises MissingPart, and NotComputable where it is beyond all numbers.
+    Raises MissingPart, ZeroLengthBone where no bone has a length, and NotComputable where it is
+    beyond all numbers.
     """
     segments, _ = without_still(recording, map_anatomy(recording.bones, chosen))
     rotations = body_rotations(recording, [s.bone for s in segments])
@@ -193,6 +194,9 @@ def stature(recording: Recording, chosen: Mapping[str, str] | None = None) -> fl
     height = standing_height(segments, _offsets(recording, segments, parents, rotations))
     if not np.isfinite(height):
         raise NotComputable
+    if height == 0.0:  # which no factor makes a person's
+        thigh = next(segment for segment in segments if segment.part is Part.THIGH)
+        raise ZeroLengthBone(recording.bones[thigh.bone].name)
     return height
 
 

@@ -12,6 +12,7 @@ from hangtime.solver.data.faults import (
     ClipTooShort,
     FramesFarApart,
     NotComputable,
+    ZeroLengthBone,
 )
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.doctor.examination.diagnose import diagnose
@@ -71,3 +72,11 @@ def test_lengths_beyond_all_numbers_are_said_not_to_be_computable() -> None:
     heads[:, [bone.name for bone in clip.bones].index("Head")] *= 1e200
     with np.errstate(all="ignore"), pytest.raises(NotComputable):
         diagnose(replace(clip, heads=heads))
+
+
+def test_a_skeleton_without_lengths_is_refused_with_a_bone_of_it() -> None:
+    clip = jump().part(slice(0, 20))
+    nowhere = replace(clip, heads=np.repeat(clip.heads[:, :1], len(clip.bones), axis=1))
+    with pytest.raises(ZeroLengthBone) as caught:
+        diagnose(nowhere)
+    assert caught.value.bone == "LeftUpLeg"
