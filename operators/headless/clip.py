@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...bridge.formats.acclaim import clip_files
+from ...solver.analysis.analyse import chosen_frames
 from ...solver.analysis.take import require_inside
 from ...solver.data.faults import ClipNotOpened, MirroredInBlender, NoArmature, NotInFile
 from ...solver.data.problem import MotionProblem
@@ -80,8 +81,7 @@ def read_clip(clip: Clip, problem: MotionProblem) -> tuple[Recording, Origin]:
     Raises every Fault that a clip can have.
     """
     armature, origin = _import(clip)
-    recording = _read(armature, problem)
-    return recording if problem.frames is None else recording.window(*problem.frames), origin
+    return chosen_frames(_read(armature, problem), problem), origin
 
 
 def load(

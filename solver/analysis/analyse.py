@@ -203,10 +203,7 @@ def build_figure(recording: Recording, problem: MotionProblem) -> tuple[Recordin
     Raises FramesReversed, ClipTooShort, FramesFarApart, MissingPart, ZeroLengthBone.
     """
     whole, ends = recording, problem.frames
-    if ends is not None:
-        if ends[1] < ends[0]:
-            raise FramesReversed(*ends)
-        recording = recording.window(*ends)
+    recording = chosen_frames(recording, problem)
     seconds = float(recording.times[-1]) if len(recording.times) else 0.0
     if seconds < MIN_CLIP_DURATION:
         chosen = len(recording.frames) < len(whole.frames)
@@ -216,6 +213,16 @@ def build_figure(recording: Recording, problem: MotionProblem) -> tuple[Recordin
         recording, mass=problem.mass, table=problem.mass_table, chosen=problem.bones
     )
     return recording, character
+
+
+def chosen_frames(recording: Recording, problem: MotionProblem) -> Recording:
+    """The problem's frames of a recording; all where it chooses none. Raises FramesReversed."""
+    if problem.frames is None:
+        return recording
+    first, last = problem.frames
+    if last < first:
+        raise FramesReversed(first, last)
+    return recording.window(first, last)
 
 
 def require_dense(recording: Recording, longest: float) -> None:

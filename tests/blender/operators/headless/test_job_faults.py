@@ -57,6 +57,11 @@ def test_frames_beyond_the_recording_are_told_with_those_that_it_has(
         read_clip(clip, MotionProblem(frames=(400.0, 700.0)))
 
 
+def test_frames_that_end_before_they_begin_are_told(clip: Path, capsys) -> None:
+    assert main(["doctor", str(clip), "--first", "200", "--last", "100"]) == 2
+    assert "end at 100, before they begin at 200; swap them" in one_line(capsys)
+
+
 def test_a_loop_without_its_root_bone_is_refused_before_the_solve(tmp_path: Path, capsys) -> None:
     recipe = 'frames = [28, 122]\n[loop]\nroot = "root bone"\n'
     assert run(tmp_path, mocap_path("run_1.bvh"), recipe) == 2
