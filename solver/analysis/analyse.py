@@ -30,7 +30,7 @@ from ..data.problem import MotionProblem, Unseen
 from ..data.recording import MIN_CLIP_DURATION, Recording, Skin
 from ..data.scene import SupportBox
 from ..scene.belt import belt_speed
-from ..scene.fall_rate import fitting_rate
+from ..scene.fall_rate import fitting_rate, is_pulled_down
 from ..scene.support import boxes_beneath
 from ..unseen.free_fall import falls_beside_unseen, unseen_support
 from .grounding import disjoint, foot_sized, grounded, parted
@@ -153,12 +153,31 @@ def _told(
 
 def agreed_rate(performance: Performance, schedule: ContactSchedule) -> float | None:
     """The frame rate at which the body falls most of the time in which nothing touches; None where
-    there is none: a clock that is wrong is so in every flight."""
+    there is none: a clock that is wrong is so in every flight. At a true rate feet only push."""
     seconds: defaultdict[float | None, float] = defaultdict(float)
     for gap in schedule.unseen:
         seconds[_fitting_rate(performance, gap, schedule.floor_m)] += gap.end - gap.start
     aloft = sum(seconds.values()) + sum(flight.end - flight.start for flight in schedule.flights)
-    return next((rate for rate, spent in seconds.items() if spent > MOST * aloft), None)
+    agreed = next((rate for rate, spent in seconds.items() if spent > MOST * aloft), None)
+    if agreed is None or _is_pulled_down(_played_at(performance, agreed)):
+        return None
+    return agreed
+
+
+def _played_at(performance: Performance, rate: float) -> Performance:
+    """The same frames at another rate, Hz, with which nothing is known of their contacts."""
+    slower = performance.recording.rate / rate
+    recording = replace(performance.recording, times=slower * performance.times, known=())
+    longer = performance.longer and _played_at(performance.longer, rate)
+    return replace(performance, recording=recording, longer=longer)
+
+
+def _is_pulled_down(performance: Performance) -> bool:
+    """Whether contacts, as they are found, would have to pull the body down."""
+    times, carried = performance.times, np.zeros(len(performance.times), bool)
+    for contact in find_contacts(performance).contacts:
+        carried |= (times >= contact.start) & (times <= contact.end)
+    return is_pulled_down(times, performance.com[:, 2], carried)
 
 
 def _fitting_rate(performance: Performance, gap: Interval, floor_m: float) -> float | None:

@@ -22,10 +22,7 @@ CLEAR = 0.02  # of the height, by which all points of the feet are up
 FEWEST = 6  # frames of a fall
 SHORTEST = 0.06  # s, at the recording's own clock, or as much as that many frames
 ROUGH = 0.03  # of the fall's height, rms, by which it may miss a parabola, and
-ROUGH_BY = 0.002  # of the figure's height
-VAGUE = (
-    0.1  # of the acceleration: its standard deviation by what misses the parabola, as white noise
-)
+ROUGH_BY = 0.002  # of the figure's height, than which its arc is higher: a straight way misses less
 OFF = 0.12  # of a scale of time; a run's short flights are 5 % off in honest recordings
 USUAL_NEAR, PRECISE_FALL = 0.035, 0.35  # a fall of 0.35 s tells the rate to 3.5 %, half of it 7 %
 # A wrong size is mostly a wrong unit: metres, centimetres, millimetres, inches, feet.
@@ -100,8 +97,10 @@ def each_fall(performance: Performance, trusted: Trusted = ALL) -> tuple[FloatAr
         missed = float(np.sqrt(np.mean((path - np.polyval(curve, clock)) ** 2)))
         fall = _acceleration(clock, path)
         smooth = missed < min(ROUGH_BY * height, ROUGH * float(np.ptp(path)) + 5e-4)
-        if curve[0] < 0.0 < fall and smooth:
-            found.append((fall, float(clock[-1])))
+        seconds = float(clock[-1])
+        arc = fall * seconds**2 / 8.0  # the same at every clock
+        if curve[0] < 0.0 and arc > ROUGH_BY * height and smooth:
+            found.append((fall, seconds))
             spans.append(span)
     return np.array(found).reshape(-1, 2), tuple(spans)
 

@@ -16,8 +16,10 @@ from hangtime.solver.body.character import build_character
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.falls import find_scale
 from hangtime.solver.doctor.finding import FindingKind
+from hangtime.solver.doctor.local_poses import LocalPoses
 from hangtime.solver.doctor.repairs import Repairs
 from hangtime.solver.doctor.upright import find_level_hips
+from hangtime.solver.numerics.rotations import rotation_matrix
 from hangtime.tests.helpers.clips import JUMP, load_recording
 from hangtime.tests.helpers.doctored import character, figure, jump
 
@@ -86,6 +88,18 @@ def test_falls_that_disagree_tell_no_clock(height: float, seconds: float) -> Non
     found = find_scale(perform(slowed(1.25).of(many).recording, build_character(many)))
     assert found is not None
     assert found.remedy == Repairs(time_scale=pytest.approx(0.8))
+
+
+@pytest.mark.parametrize("degrees", [40.0, 60.0])
+def test_a_walks_foot_that_floats_tells_no_clock(degrees: float) -> None:
+    """Its shank is turned for a step, of which 0.1 s goes straight on as far as can be told."""
+    walk = load_recording("01_01.amc").window(1841, 2160)
+    share, shank = np.linspace(0.0, 1.0, len(walk.frames)), walk.index("ltibia")
+    turned = np.radians(degrees) * np.interp(share, [0.38, 0.42, 0.58, 0.62], [0, 1, 1, 0])
+    local = LocalPoses.of(walk)
+    local.rotations[:, shank] @= rotation_matrix(np.outer(turned, [1.0, 0.0, 0.0]))
+    kinds = {finding.kind for finding in diagnose(local.posed(walk)).findings}
+    assert FindingKind.TIME_SCALE not in kinds
 
 
 @pytest.mark.parametrize("name", [JUMP, "run_1.bvh", "hops_in_place.bvh"])

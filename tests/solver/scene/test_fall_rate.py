@@ -10,7 +10,7 @@ from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.data.faults import UnseenSupport
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import Recording
-from hangtime.solver.scene.fall_rate import fitting_rate
+from hangtime.solver.scene.fall_rate import fitting_rate, is_pulled_down
 from hangtime.tests.helpers.clips import JUMP, load_recording
 
 
@@ -41,6 +41,25 @@ def test_what_is_carried_tells_none() -> None:
     times = np.arange(50) / 24.0
     assert fitting_rate(times, np.full(50, 1.3), 24.0) is None
     assert fitting_rate(times, 1.0 + 0.1 * np.sin(9.0 * times), 24.0) is None
+
+
+@pytest.mark.parametrize(("faster", "pulled"), [(1.0, False), (2.0, True)])
+def test_feet_that_walk_would_pull_at_a_rate_that_makes_a_step_a_fall(faster, pulled) -> None:
+    """Hips that rise and sink by 5 cm, 1.8 times a second: from 3.2 m/s² down to as much up."""
+    times = np.arange(240) / (120.0 * faster)
+    heights = 0.95 + 0.025 * np.sin(2.0 * np.pi * 1.8 * faster * times)
+    floating = (times * faster > 0.6) & (times * faster < 0.8)
+    assert is_pulled_down(times, heights, ~floating) == pulled
+
+
+def test_a_hops_feet_push_though_contacts_last_a_little_too_long() -> None:
+    """Whose flights of 0.4 s begin and end 30 ms within contacts, as these are found."""
+    times = np.arange(240) / 120.0
+    flying = np.mod(times, 0.8) < 0.4
+    heights = 1.0 + np.where(flying, 1.0, -1.0) * 0.5 * 9.81 * 0.4 * np.mod(times, 0.4)
+    heights -= np.where(flying, 1.0, -1.0) * 0.5 * 9.81 * np.mod(times, 0.4) ** 2
+    in_air = (np.mod(times, 0.8) > 0.03) & (np.mod(times, 0.8) < 0.37)
+    assert not is_pulled_down(times, heights, ~in_air)
 
 
 def told_rates(recording: Recording) -> list[int | None]:
