@@ -43,9 +43,8 @@ def unsound_spikes(recording: Recording, local: LocalPoses, figure: Figure) -> B
     for root in (b for b, bone in enumerate(recording.bones) if bone.parent < 0):
         heads = local.heads[:, root]
         away = np.linalg.norm(fourth_differences(heads), axis=1)[:, None]
-        step, over = (np.linalg.norm(heads[n:] - heads[:-n], axis=1)[:, None] for n in (1, 2))
-        single = _single(away, np.array(SPIKE_PLACE * slack(rate))) & _returned(step, over)
-        unsound[:, root] |= single[:, 0]
+        single = _single(away, np.array(SPIKE_PLACE * slack(rate)))[:, 0]
+        unsound[:, root] |= single & _came_back(heads)
     return unsound | bursts(recording, local, figure)
 
 
@@ -90,3 +89,13 @@ def _returned(steps: FloatArray, over: FloatArray) -> BoolArray:
     """
     inner = over < RETURNED * np.minimum(steps[:-1], steps[1:])
     return np.pad(inner, ((1, 1), (0, 0)))
+
+
+def _came_back(heads: FloatArray) -> BoolArray:
+    """(T,) likewise of places (T, 3), as seen by who moves as fast as the frames beside: at a run a
+    frame's way is as long as that to one that is off. False for the first and last two."""
+    steps = np.diff(heads, axis=0)
+    usual = 0.5 * (steps[:-3] + steps[3:])
+    there, back = steps[1:-2] - usual, steps[2:-1] - usual
+    away = np.minimum(np.linalg.norm(there, axis=1), np.linalg.norm(back, axis=1))
+    return np.pad(np.linalg.norm(there + back, axis=1) < RETURNED * away, 2)

@@ -32,6 +32,7 @@ from hangtime.solver.doctor.frames.spikes import find_spikes
 from hangtime.solver.doctor.repairs import Repairs, UpAxis
 from hangtime.solver.doctor.upright import find_up
 from hangtime.solver.worker.pipeline import measure
+from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.doctored import figure, jump, of_poses, sparse
 
 
@@ -89,6 +90,18 @@ def test_a_spike_of_the_whole_body_is_told_by_how_far_it_is_away() -> None:
     assert (round(found.amount), found.unit) == (40, "cm")
     frame = jump().frames[50]
     assert found.frames == ((frame, frame),)
+
+
+@pytest.mark.parametrize("off", [[0.06, 0.0, 0.0], [0.0, 0.06, 0.06]])
+def test_a_frame_of_a_run_that_is_off_is_a_spike_and_no_cut(off: list[float]) -> None:
+    """From a frame to the next the runner goes as far as that frame is off."""
+    run = load_recording("run_3.bvh")
+    for frame in (40, 57, 74):
+        heads = run.heads.copy()
+        heads[frame] += off
+        (found,) = of_poses(replace(run, heads=heads))
+        assert found.kind is FindingKind.SPIKE
+        assert found.frames == ((run.frames[frame], run.frames[frame]),)
 
 
 @pytest.mark.parametrize(
