@@ -33,30 +33,37 @@ def bursts(recording: Recording, local: LocalPoses, figure: Figure) -> BoolArray
     for bone, part in figure.parts:
         turns = local.rotations[:, bone]
 
-        def turned(one: int, other: int, turns: FloatArray = turns) -> float:
-            return float(angles_between(turns[one], turns[other]))
+        def turned_back(into: int, out: int, turns: FloatArray = turns) -> bool:
+            ends = np.array([into, out, into]), np.array([into + 1, out + 1, out + 1])
+            there, back, left = angles_between(turns[ends[0]], turns[ends[1]])
+            return bool(left < RETURNED * min(there, back))
 
         limit = (TOE_TURN if part is Part.TOE else TURN) * slack(recording.rate, part)
-        for first, last in _bursts(turned_steps(local, bone), limit, turned):
+        for first, last in _bursts(turned_steps(local, bone), limit, turned_back):
             unsound[first : last + 1, bone] = True
     root = figure.bones[0]
+    steps = np.diff(local.heads[:, root], axis=0)
 
-    def moved(one: int, other: int) -> float:
-        return float(np.linalg.norm(local.heads[one, root] - local.heads[other, root]))
+    def moved_back(into: int, out: int) -> bool:
+        """As seen by who moves as fast as the frames beside."""
+        beside = np.concatenate([steps[:into][-1:], steps[out + 1 :][:1]])
+        seen = steps[into : out + 1] - beside.sum(axis=0) / max(len(beside), 1)
+        left = np.linalg.norm(seen.sum(axis=0))
+        return bool(left < RETURNED * np.linalg.norm(seen[[0, -1]], axis=1).min())
 
-    for first, last in _bursts(moved_steps(local, root), PLACE * slack(recording.rate), moved):
+    for first, last in _bursts(moved_steps(local, root), PLACE * slack(recording.rate), moved_back):
         unsound[first : last + 1, root] = True
     return unsound
 
 
 def _bursts(
-    uneven: FloatArray, limit: float, apart: Callable[[int, int], float]
+    uneven: FloatArray, limit: float, returned: Callable[[int, int], bool]
 ) -> Iterator[tuple[int, int]]:
-    """First and last frame of each. uneven: (T - 1,). apart: of two frames' poses."""
+    """First and last frame of each. uneven: (T - 1,). returned: whether what leaves by one step is
+    back after another."""
     edges = np.flatnonzero(uneven > limit).tolist()
     for into in edges:
         for out in (e for e in edges if 2 <= e - into <= LONGEST):
-            least = min(apart(into, into + 1), apart(out, out + 1))
             stands_out = STANDS_OUT * around(uneven, into, out) < min(uneven[into], uneven[out])
-            if stands_out and apart(into, out + 1) < RETURNED * least:
+            if stands_out and returned(into, out):
                 yield into + 1, out

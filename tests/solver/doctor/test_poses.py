@@ -92,16 +92,17 @@ def test_a_spike_of_the_whole_body_is_told_by_how_far_it_is_away() -> None:
     assert found.frames == ((frame, frame),)
 
 
+@pytest.mark.parametrize("frames", [1, 3, 6])
 @pytest.mark.parametrize("off", [[0.06, 0.0, 0.0], [0.0, 0.06, 0.06]])
-def test_a_frame_of_a_run_that_is_off_is_a_spike_and_no_cut(off: list[float]) -> None:
-    """From a frame to the next the runner goes as far as that frame is off."""
+def test_frames_of_a_run_that_are_off_are_a_spike_and_no_cut(off: list[float], frames: int) -> None:
+    """From a frame to the next the runner goes about as far as they are off."""
     run = load_recording("run_3.bvh")
     for frame in (40, 57, 74):
         heads = run.heads.copy()
-        heads[frame] += off
+        heads[frame : frame + frames] += off
         (found,) = of_poses(replace(run, heads=heads))
         assert found.kind is FindingKind.SPIKE
-        assert found.frames == ((run.frames[frame], run.frames[frame]),)
+        assert found.frames == ((run.frames[frame], run.frames[frame + frames - 1]),)
 
 
 @pytest.mark.parametrize(
