@@ -36,6 +36,17 @@ def test_a_clock_that_is_wrong_is_told_by_the_fall(factor: float) -> None:
     assert found.alternative.scale == pytest.approx(factor**2, rel=0.05)
 
 
+@pytest.mark.parametrize("factor", [0.85, 1.2])
+def test_a_long_fall_tells_a_size_that_may_be_a_persons(factor: float) -> None:
+    """One of 0.4 s tells the acceleration to a few percent: sizes that miss it by 15 % are told,
+    with the clock that explains them as well."""
+    damaged = sized(factor, "size").of(jump()).recording
+    (found,) = diagnose(damaged).findings
+    assert found.kind is FindingKind.TIME_SCALE
+    assert found.alternative is not None
+    assert found.alternative.scale * factor == pytest.approx(1.0, rel=0.04)
+
+
 def test_a_body_that_leans_on_a_hand_does_not_fall() -> None:
     """As in a cartwheel: it sinks as if a clock that is wrong had slowed its fall."""
     slow = slowed(2.0).of(jump()).recording
