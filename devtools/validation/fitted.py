@@ -12,7 +12,7 @@ from ...solver.arrays import FloatArray
 from ...solver.data.constants import STANDARD_GRAVITY, UP
 from ...solver.data.problem import MotionProblem, Unseen
 from ...solver.fitting.fit import Fit
-from ...solver.worker.pipeline import fit_subject, no_fit
+from ...solver.worker.pipeline import fit_subject, no_fit, require_shown
 from .contacts import joined
 from .trials import FEET, UNIT, GroundForces, Trial
 
@@ -55,7 +55,7 @@ class FittedTrial:
 def fit_trial(trial: Trial) -> FittedTrial:
     """Finds the contacts and fits, through the command line's reader and the pipeline.
 
-    Raises every Fault that a clip can have, and NoFit.
+    Raises every Fault that a clip can have, FitNeedsSupport and NoFit.
     """
     stages = Stages(sys.stderr)
     problem = MotionProblem(frames=trial.frames, mass=trial.mass, unseen=Unseen.REFUSE)
@@ -63,6 +63,7 @@ def fit_trial(trial: Trial) -> FittedTrial:
     fitted = fit_subject(loaded.subject, stages)
     if not fitted.solved:
         raise no_fit(loaded.subject, fitted)
+    require_shown(loaded.subject, fitted)
     start = (float(loaded.subject.recording.frames[0]) - 1.0) / loaded.subject.recording.rate
     return FittedTrial(trial, fitted, start, stages.done[-1].seconds)
 

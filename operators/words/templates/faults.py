@@ -189,6 +189,10 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     "does not fall, so something unseen carries it (a box, a rail, a hand); choose frames without "
     "it, or let what carries it be ground in the panel World. If nothing does, give the scene the "
     "recording's frame rate.",
+    faults.FitNeedsSupport: "No motion comes near the recording unless something unseen carries "
+    "the body in frames {spans:spans}, which the recipe refuses; correct the frames of the "
+    "contacts there, add what does carry it (a contact, or an [[object]] that is ground), choose "
+    "frames without it, or leave out “unseen_support”, to have it fitted and told.",
     faults.Treadmill: "While they stand, the feet slide along the floor at a steady {speed:.1f} "
     "m/s, as on a treadmill, so no place on the ground can hold them; add that speed to the hips' "
     "motion, as the doctor's repair of drift does (Examine, or the command doctor), or choose a "

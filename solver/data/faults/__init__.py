@@ -16,6 +16,7 @@ from .recordings import BoneTaken as BoneTaken
 from .recordings import ChangedMeanwhile as ChangedMeanwhile
 from .recordings import ClipNotOpened as ClipNotOpened
 from .recordings import ClipTooShort as ClipTooShort
+from .recordings import FitNeedsSupport as FitNeedsSupport
 from .recordings import FramesFarApart as FramesFarApart
 from .recordings import FramesReversed as FramesReversed
 from .recordings import LostEdits as LostEdits

@@ -279,6 +279,14 @@ class UnseenSupports(Fault):
 
 
 @dataclass
+class FitNeedsSupport(Fault):
+    """No motion comes near the recording but with something unseen that carries the body, in spans
+    (first, last frame), which its problem refuses."""
+
+    spans: tuple[tuple[float, float], ...]
+
+
+@dataclass
 class Treadmill(Fault):
     """The feet slide along the floor at one steady speed, m/s, so no place holds them."""
 

@@ -12,8 +12,8 @@ from hangtime.operators.words.messages import sentence
 from hangtime.operators.words.report_text import as_text
 from hangtime.solver.analysis.pinned_places import pinned_places
 from hangtime.solver.data.contacts import PhaseKind
-from hangtime.solver.data.faults import UnknownPhase, UnseenSupport
-from hangtime.solver.data.problem import MotionProblem, Pin
+from hangtime.solver.data.faults import FitNeedsSupport, UnknownPhase, UnseenSupport
+from hangtime.solver.data.problem import MotionProblem, Pin, Unseen
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.data.reports.report import Report
@@ -108,6 +108,17 @@ def test_mujoco_finds_nothing_that_unseen_support_leaves_unexplained(tmp_path: P
         assert not left.flying.any()
         assert left.worst("force", flying=False) < 1e-3
         assert left.rms("moment", flying=False) < 2e-3
+
+
+def test_who_refuses_unseen_support_is_refused_what_only_the_fit_tells() -> None:
+    """Here the analysis tells it as well, and is not asked."""
+    refusing = hung().subject.asked(MotionProblem(unseen=Unseen.REFUSE))
+    with pytest.raises(FitNeedsSupport) as caught:
+        adapt_fit(refusing, hung().adaptation.fit, StageClock())
+    assert caught.value.spans == ((110, 180),)
+    assert "carries the body in frames 110 to 180, which the recipe refuses" in sentence(
+        caught.value
+    )
 
 
 @pytest.mark.slow
