@@ -23,6 +23,7 @@ from ...operators.headless.stages import Stages
 from ...operators.words.doctor_text import diagnosis_text, finding_sentence
 from ...operators.words.headline import headline, nearness
 from ...operators.words.messages import together
+from ...operators.words.warning_text import warning_lines
 from ...solver.data.faults import BadRecipe, NoSolution
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
@@ -107,7 +108,8 @@ def adapt_cell(
     if Output.BVH in settings.outputs and result.fault is None:
         write_motion(result, loaded.origin, outbox)
     advice = [explained(each, None) for each in together(loaded.subject.analysis.unseen)]
-    return Done((*headline(report), *advice), figures(report), result.fault)
+    told = (*headline(report), *warning_lines(report), *advice)
+    return Done(told, figures(report), result.fault)
 
 
 def check_cell(

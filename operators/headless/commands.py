@@ -21,6 +21,7 @@ from ..words.analysis_text import analysis_text, starter_recipe
 from ..words.headline import headline
 from ..words.messages import together
 from ..words.report_text import gravity_lines
+from ..words.warning_text import warning_lines
 from .clip import Clip, LoadedClip, load
 from .doctor import examined, told, write_recipe_of
 from .doubts import doubts_about
@@ -185,7 +186,7 @@ def adapt(options: argparse.Namespace) -> None:
         files = outbox.deliver()
     total = f"{'Total':<{WIDTH}}{stages.total:6.1f} s"
     advice = [explained(each, None) for each in together(loaded.subject.analysis.unseen)]
-    print(total, *headline(report), *advice, "Written:", sep="\n")
+    print(total, *headline(report), *warning_lines(report), *advice, "Written:", sep="\n")
     for path in files:
         print(f"  {path}")
 

@@ -10,6 +10,7 @@ from ...solver.data.reports.report import Report, as_json
 from ...solver.results.npz_export import save
 from ...solver.worker.pipeline import AdaptationResult
 from ..words.report_text import as_text
+from ..words.warning_text import warnings_of
 from .outbox import Outbox, not_writable
 
 TRAJECTORY = "trajectory.npz"
@@ -35,7 +36,7 @@ def write_report(
 
     Raises OutputNotWritable.
     """
-    records = {**as_json(report), **more}
+    records = {**as_json(report), "warnings": warnings_of(report), **more}
     outbox.write_text(REPORTS[0], json.dumps(records, indent=1, allow_nan=False) + "\n")
     outbox.write_text(
         REPORTS[1],

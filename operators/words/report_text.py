@@ -24,6 +24,7 @@ from .headline import (
     with_unit,
 )
 from .messages import length
+from .warning_text import warning_lines
 
 LEFT_AT_MOST = {
     PhaseKind.FLIGHT: 0.001,
@@ -46,7 +47,7 @@ DURATIONS = {  # where they are not as one would expect
 
 def as_text(report: Report) -> str:
     """A report in plain words, some forty lines."""
-    lines = [*headline(report), ""]
+    lines = [*headline(report), *warning_lines(report), ""]
     lines += [*_input(report), ""]
     if report.loop is not None:
         lines += [*loop_lines(report), ""]

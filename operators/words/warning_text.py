@@ -22,3 +22,8 @@ def warnings_of(report: Report) -> list[str]:
             f"in the recording {recorded:.1f} at most"
         )
     return told
+
+
+def warning_lines(report: Report) -> list[str]:
+    """The same, as they stand among lines that are none."""
+    return [f"Warning: {each}" for each in warnings_of(report)]
