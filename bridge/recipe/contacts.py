@@ -1,5 +1,8 @@
 """Records of contacts in recipes: pins, corrections of what the analysis found, and additions."""
 
+from collections.abc import Iterable
+from dataclasses import asdict
+
 from ...solver.data.problem import AddedContact, ContactEdit, OffsetAxes, Pin
 from ..recipe_syntax.items import (
     TOUCHING,
@@ -16,6 +19,7 @@ from ..recipe_syntax.items import (
     word,
 )
 from ..recipe_syntax.table import Table
+from ..recipe_syntax.toml_text import entries
 
 
 def _read_offset(table: Table) -> Values:
@@ -77,3 +81,8 @@ ADDED = Kind(
     needs=(("point",), ("start_frame",), ("end_frame",)),
     named=False,
 )
+
+
+def added_texts(contacts: Iterable[AddedContact]) -> list[str]:
+    """The tables of contacts to add."""
+    return [f"[[{ADDED.header}]]\n{entries(asdict(each))}" for each in contacts]

@@ -5,6 +5,7 @@ Loads none of the solver's stages: a batch plans and hands out cells without the
 
 from pathlib import Path
 
+from ...bridge.recipe.contacts import added_texts
 from ...bridge.recipe.object_texts import support_texts
 from ...bridge.recipe.problem import locate, read_recipe_text
 from ...solver.data.faults import BadRecipe, Fault, UnseenSupport
@@ -17,8 +18,9 @@ CANCELLED = 130
 
 def explained(fault: Fault, recipe: Path | None) -> str:
     """The fault in words, with the recipe's line where one is to blame, or lines to add to it."""
-    if isinstance(fault, UnseenSupport) and fault.boxes:
-        return "\n\n".join([sentence(fault), *support_texts(fault.boxes)]).rstrip()
+    if isinstance(fault, UnseenSupport) and (fault.boxes or fault.hands):
+        remedies = [*support_texts(fault.boxes), *added_texts(fault.hands)]
+        return "\n\n".join([sentence(fault), *remedies]).rstrip()
     if recipe is None or isinstance(fault, BadRecipe):
         return sentence(fault)
     line = locate(read_recipe_text(recipe), fault)

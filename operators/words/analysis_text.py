@@ -5,6 +5,7 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
+from ...bridge.recipe.contacts import added_texts
 from ...bridge.recipe.object_texts import object_text, support_texts
 from ...solver.analysis.analyse import Analysis
 from ...solver.data.contacts import Contact, Phase, PhaseKind
@@ -37,10 +38,12 @@ def analysis_text(analysis: Analysis, origin: Origin) -> str:
 
 
 def _unseen(analysis: Analysis) -> list[str]:
-    """Where something unseen carries the body, and a box that would."""
+    """Where something unseen carries the body, and a box or hands that would."""
     told = [sentence(each) for each in together(analysis.unseen)]
-    boxes = [box for u in analysis.unseen if isinstance(u, UnseenSupport) for box in u.boxes]
-    return ["", *told, *support_texts(boxes)] if told else []
+    unseen = [each for each in analysis.unseen if isinstance(each, UnseenSupport)]
+    boxes = [box for each in unseen for box in each.boxes]
+    hands = dict.fromkeys(contact for each in unseen for contact in each.hands)
+    return ["", *told, *support_texts(boxes), *added_texts(hands)] if told else []
 
 
 def _contact_lines(analysis: Analysis) -> list[str]:

@@ -88,8 +88,9 @@ def _variant(fault: Fault) -> int:
         case faults.JoinedPhase():
             return bool(fault.kept)
         case faults.UnseenSupport():
-            known = bool(fault.boxes), fault.rate is not None, fault.exchanged, fault.skidding
-            return max(i for i, each in enumerate((True, *known, fault.lying)) if each)
+            carrying = bool(fault.boxes), bool(fault.hands), fault.rate is not None
+            mistaken = fault.exchanged, fault.skidding, fault.lying
+            return max(i for i, each in enumerate((True, *carrying, *mistaken)) if each)
         case faults.UnknownObject():
             return bool(fault.known)
         case faults.ChangedMeanwhile() | faults.RateChanged():
@@ -120,6 +121,10 @@ class _Formatter(Formatter):
                 return _few(value, self._translate)
             case "spans":
                 return ", ".join(f"{first:g} to {last:g}" for first, last in value)
+            case "contacts":
+                return ", ".join(
+                    f"{each.point} {each.start_frame:g} to {each.end_frame:g}" for each in value
+                )
             case "numbers":
                 return ", ".join(f"{number:g}" for number in value)
             case "plain":  # 100, not 1e+02

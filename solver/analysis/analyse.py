@@ -16,7 +16,14 @@ import numpy as np
 
 from ..arrays import BoolArray
 from ..body.character import Character, build_character
-from ..data.contacts import Contact, ContactSchedule, Interval, numbered, snap
+from ..data.contacts import (
+    Contact,
+    ContactSchedule,
+    Interval,
+    PointKind,
+    numbered,
+    snap,
+)
 from ..data.faults import (
     BadTiming,
     ClipTooShort,
@@ -26,7 +33,7 @@ from ..data.faults import (
     UnknownContactName,
     UnseenSupport,
 )
-from ..data.problem import MotionProblem, Unseen
+from ..data.problem import AddedContact, MotionProblem, Unseen
 from ..data.recording import MIN_CLIP_DURATION, Recording, Skin
 from ..data.scene import SupportBox
 from ..scene.belt import belt_speed
@@ -48,7 +55,7 @@ from .take import take_of
 ROUNDING = 1e-6  # of a frame's time
 MOST = 2.0 / 3.0  # of the time in the air, in which the body falls at another rate than the scene's
 LEANING_SHARE = 0.2  # of a gap, in which hands or knees on the floor may be what carries the body
-LOW_SHARE = 0.9  # of a gap, in which a foot on the floor touches all the same
+LOW_SHARE = 0.9  # of a gap, in which a foot or hand on the floor touches all the same
 MAX_FRAME_TIME = 0.125  # s: the flight of a small hop, a quarter second, has two frames then
 
 
@@ -145,10 +152,36 @@ def _told(
             continue
         rate = agreed if _fitting_rate(performance, gap, floor_m) == agreed else None
         boxes: tuple[SupportBox, ...] = ()
-        if rate is None and not _leans(performance, gap, floor_m):
+        hands: tuple[AddedContact, ...] = ()
+        if _leans(performance, gap, floor_m):
+            hands = _hands(performance, schedule, gap)
+        elif rate is None:
             boxes = boxes_beneath(performance.times, points, gap, floor_m)
         skidding = rate is None and not boxes and gap in slid
-        yield UnseenSupport(first, last, boxes, rate, recording.rate, skidding=skidding)
+        yield UnseenSupport(first, last, boxes, hands, rate, recording.rate, skidding=skidding)
+
+
+def _hands(
+    performance: Performance, schedule: ContactSchedule, gap: Interval
+) -> tuple[AddedContact, ...]:
+    """The contacts of hands that would carry the body through a gap, by their height alone: palms
+    that a body vaults over roll too fast for contacts to be found. None where they do not last."""
+    points, floor_m = contact_points(performance)
+    frames, inside = performance.recording.frames, _inside(performance, gap)
+    carried, found = np.zeros_like(inside), list[AddedContact]()
+    for name, point in points.items():
+        if point.kind is not PointKind.HAND:
+            continue
+        low = np.flatnonzero(point.track[:, 2] - floor_m < point.kind.value.max_height)
+        for run in np.split(low, np.flatnonzero(np.diff(low) > 1) + 1) if len(low) else ():
+            start, end = performance.times[run[[0, -1]]]
+            beside = (c for c in schedule.contacts if c.start < end and c.end > start)
+            known = any(contact.point == name for contact in beside)
+            lasts = end - start >= point.kind.value.min_duration
+            if lasts and not known and inside[run].any():
+                carried[run] = True
+                found.append(AddedContact(name, float(frames[run[0]]), float(frames[run[-1]])))
+    return tuple(found) if carried[inside].mean() >= LOW_SHARE else ()
 
 
 def agreed_rate(performance: Performance, schedule: ContactSchedule) -> float | None:

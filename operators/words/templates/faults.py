@@ -167,6 +167,10 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
         "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
         "fall: the feet rest {boxes[0].size[2]:length} above the floor, as on a box. Add it (Add "
         "Box Here in the panel World, or an [[object]] in a recipe), or choose frames without it.",
+        "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
+        "fall, for hands are on the ground, whose contacts are not found where they roll. Let them "
+        "touch in these frames ({hands:contacts}): Add Contact, the + beside the contacts of a "
+        "stance, or an [[add_contact]] in a recipe.",
         "The body falls as gravity has it at {rate:.5g} frames a second, but the scene has "
         "{scene_rate:.5g} (frames {first:g} to {last:g}); set the scene's frame rate to "
         "{rate:.5g}.",

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from enum import Enum
 
+from ..problem import AddedContact
 from ..scene import SupportBox
 from .base import Fault
 
@@ -240,7 +241,8 @@ class FramesReversed(Fault):
 class UnseenSupport(Fault):
     """Nothing touches, yet the body does not fall: something unrecorded carries it (frames).
 
-    boxes: what would, where feet rest above the floor. rate: frames a second at which the body
+    boxes: what would, where feet rest above the floor. hands: their contacts, where hands are on
+    the floor. rate: frames a second at which the body
     would fall as gravity has it, where the scene's, scene_rate, is another. exchanged: whether the
     legs are there, so that none of these is meant. skidding: whether feet are on the ground, and go
     from place to place. lying: whether another axis than Z points from the feet to the head.
@@ -249,6 +251,7 @@ class UnseenSupport(Fault):
     first: float
     last: float
     boxes: tuple[SupportBox, ...] = ()
+    hands: tuple[AddedContact, ...] = ()
     rate: float | None = None
     scene_rate: float = 0.0
     exchanged: bool = False

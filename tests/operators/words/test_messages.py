@@ -27,7 +27,7 @@ from hangtime.solver.data.faults import (
     TextCure,
     UnseenSupport,
 )
-from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.problem import AddedContact, MotionProblem
 from hangtime.solver.data.row_kinds import RowKind, Violation
 from hangtime.solver.data.scene import SupportBox
 from hangtime.solver.data.status import Status
@@ -61,6 +61,8 @@ def filled(hint: object) -> object:
         return ()
     if "Violation" in text:
         return (Violation("Landing: Left heel 2", RowKind.PIN, 12.0),)
+    if "AddedContact" in text:
+        return (AddedContact("Left hand", 3.0, 9.0),)
     if "SupportBox" in text:
         return (SupportBox((0.4, 0.3, 0.31), (0.0, 0.0, 0.0), 0.0),)
     if text.startswith("tuple[tuple[float"):
