@@ -4,6 +4,7 @@ accepted, what failed."""
 from collections.abc import Sequence
 
 from ...solver.data.constants import STANDARD_GRAVITY
+from ...solver.data.contacts import phase_title
 from ...solver.data.faults import NoFit, NoSolution
 from ...solver.data.reports.certificate import CertificateItem, CertificateLine
 from ...solver.data.reports.constraints import AcceptedReport, ConstraintReport, FitNeeds
@@ -171,6 +172,13 @@ def accepted_lines(needs: FitNeeds) -> list[str]:
             for each in needs.unseen_support
         )
         lines.append(f"Something unseen carries the body in frames (by body weights) {spans}")
+    lines += [
+        f"{phase_title(each.phase)} (frames {each.first_frame:.0f} to {each.last_frame:.0f}) falls "
+        f"at {each.acceleration:.1f} m/s², up to {length(each.off_mm / 1000.0)} off any free fall, "
+        "so something unseen carries it; correct the contacts before and after it, or mend the "
+        "recording there"
+        for each in needs.carried_flights
+    ]
     if needs.let_go:
         names = ", ".join(
             f"{each.name} ({length(each.off_mm / 1000.0)} off)" if each.off_mm else each.name

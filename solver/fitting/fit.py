@@ -11,7 +11,7 @@ import numpy as np
 
 from ..analysis.performance import Performance
 from ..arrays import FloatArray
-from ..data.contacts import Contact, ContactSchedule
+from ..data.contacts import Contact, ContactSchedule, Phase
 from ..data.reports.certificate import CertificateItem
 from ..data.requests import BodyChange
 from ..data.status import Status
@@ -147,11 +147,13 @@ class LetGo:
 
 @dataclass(frozen=True)
 class Fit(SolvedMotion):
-    """A fitted performance. let_go: contacts that were found, but that it does not hold."""
+    """A fitted performance. let_go: contacts that were found, but that it does not hold. carried:
+    flights that were found, in which something unseen carries it."""
 
     performance: Performance
     schedule: ContactSchedule
     let_go: tuple[LetGo, ...] = ()
+    carried: tuple[Phase, ...] = ()
 
     @cached_property
     def price(self) -> JointPrice:

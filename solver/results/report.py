@@ -65,7 +65,7 @@ from .joint_report import fast_joint, joint_changes, recorded_ranges
 from .moving_ground import moving_ground
 from .npz_export import instants
 from .torque_curve import exact_torques, torque_curve
-from .unseen_support import accepted, let_go, unseen_support, worst_joint
+from .unseen_support import accepted, carried_flights, let_go, unseen_support, worst_joint
 from .violations import condition_violations, pins_of_contacts, worst_constraints
 
 SAMPLE_RATE = 1000.0  # Hz, of what is measured between the nodes
@@ -124,6 +124,7 @@ def report(
         unseen_support=tuple(unseen_support(fit, motion)),
         let_go=tuple(let_go(fit)),
         accepted_contacts=tuple(accepted(motion)),
+        carried_flights=tuple(carried_flights(fit)),
         lifted_flights=tuple(lifted_flights(adaptation.setup)),
     )
 

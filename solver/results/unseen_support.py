@@ -5,14 +5,21 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..arrays import FloatArray
-from ..data.constants import STANDARD_GRAVITY
-from ..data.reports.constraints import AcceptedReport, FitNeeds, LetGoReport, UnseenSupportReport
+from ..data.constants import STANDARD_GRAVITY, UP
+from ..data.reports.constraints import (
+    AcceptedReport,
+    CarriedFlightReport,
+    FitNeeds,
+    LetGoReport,
+    UnseenSupportReport,
+)
 from ..fitting.fit import Fit
 from ..transcription.motion import Motion, pinned_instants
 from .flight_summary import scene_frame
 
 SAMPLE_RATE = 500.0  # Hz
 CARRIES = 0.05  # body weights; less is within the error of forces that are told from recordings
+LEAST_FRAMES = 4  # that tell an acceleration
 APART = 0.1  # s; what is nearer is one interval
 
 
@@ -52,7 +59,29 @@ def fit_needs(fit: Fit, motion: Motion | None = None) -> FitNeeds:
     given."""
     motion = motion or fit.motion
     carried = tuple(unseen_support(fit, motion))
-    return FitNeeds(carried, tuple(let_go(fit)), tuple(accepted(motion)))
+    needs = tuple(let_go(fit)), tuple(accepted(motion)), tuple(carried_flights(fit))
+    return FitNeeds(carried, *needs)
+
+
+def carried_flights(fit: Fit) -> Iterator[CarriedFlightReport]:
+    """The flights that were found, in which a fit has something unseen carry the body; of one of
+    so few frames that they tell no fall nothing is told."""
+    times, com = fit.performance.times, fit.performance.com
+    for each in fit.carried:
+        during = (times >= each.start) & (times <= each.end)
+        if np.count_nonzero(during) < LEAST_FRAMES:
+            continue
+        t, places = times[during] - each.start, com[during]
+        without_fall = places + 0.5 * STANDARD_GRAVITY * np.outer(t**2, UP)
+        slope, start = np.polyfit(t, without_fall, 1)
+        off = without_fall - np.outer(t, slope) - start
+        yield CarriedFlightReport(
+            phase=each.name,
+            first_frame=scene_frame(fit, each.start),
+            last_frame=scene_frame(fit, each.end),
+            acceleration=float(-2.0 * np.polyfit(t, places[:, 2], 2)[0]),
+            off_mm=1000.0 * float(np.linalg.norm(off, axis=1).max()),
+        )
 
 
 def accepted(motion: Motion) -> Iterator[AcceptedReport]:

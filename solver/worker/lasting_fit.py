@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..analysis.performance import Performance, leans, snap_tolerance
-from ..data.contacts import ContactSchedule, Interval, gaps
+from ..data.contacts import ContactSchedule, Interval, PhaseKind, gaps
 from ..data.row_kinds import RowKind
 from ..doctor.local_poses import runs
 from ..fitting.fit import Fit, LetGo, fit
@@ -46,6 +46,7 @@ def lasting_fit(
     has it.
     """
     let_go: list[LetGo] = []
+    flights = [phase for phase in schedule.phases if phase.kind is PhaseKind.FLIGHT]
     for remaining in reversed(range(MAX_ROUNDS + 1)):
         found = fit(
             performance, schedule, periodic=periodic, rides=rides(schedule), progress=progress
@@ -67,7 +68,9 @@ def lasting_fit(
     doubted = () if periodic or not found.solved else _doubted(found)
     if doubted:
         found = _nearer(found, _unseen_too(schedule, doubted), rides, progress)
-    return replace(found, let_go=tuple(let_go))
+    unseen = found.schedule.unseen
+    carried = (f for f in flights if any(u.start < f.end and u.end > f.start for u in unseen))
+    return replace(found, let_go=tuple(let_go), carried=tuple(carried))
 
 
 def _nearer(found: Fit, told: ContactSchedule, rides: Rides, progress: Progress | None) -> Fit:

@@ -90,6 +90,18 @@ class UnseenSupportReport:
 
 
 @dataclass(frozen=True)
+class CarriedFlightReport:
+    """A flight that was found, in which the fit has something unseen carry the body. acceleration:
+    m/s², downwards, as recorded; off_mm: by how much the centre of mass leaves any free fall."""
+
+    phase: str
+    first_frame: float
+    last_frame: float
+    acceleration: float
+    off_mm: float
+
+
+@dataclass(frozen=True)
 class LetGoReport:
     """A contact that was found, but that no valid motion near the recording holds beside others.
 
@@ -119,3 +131,4 @@ class FitNeeds:
     unseen_support: tuple[UnseenSupportReport, ...] = ()
     let_go: tuple[LetGoReport, ...] = ()
     accepted: tuple[AcceptedReport, ...] = ()
+    carried_flights: tuple[CarriedFlightReport, ...] = ()

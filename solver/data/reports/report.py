@@ -16,6 +16,7 @@ from ..status import Durations, Status
 from .certificate import CertificateLine
 from .constraints import (
     AcceptedReport,
+    CarriedFlightReport,
     ConstraintReport,
     ContactReport,
     FitNeeds,
@@ -123,7 +124,8 @@ class Report:
     does not involve them. recorded_overlaps: deepest first; none where nothing is solid.
     recorded_ranges: worst first; none where the figure is no human. joint_changes: the joints that
     changed most. stages: None where nobody timed them. keys: None where none were left out.
-    unseen_support: where something unseen carries the body. let_go: contacts that the fit found
+    unseen_support: where something unseen carries the body. carried_flights: the flights among
+    it. let_go: contacts that the fit found
     no way to hold. accepted_contacts: those that it holds near enough to their places.
     missed_contacts: those that the written keys do not show where they were solved to be.
     missed_bodies: bones that the written keys of controls leave elsewhere than solved.
@@ -167,6 +169,7 @@ class Report:
     unseen_support: tuple[UnseenSupportReport, ...] = ()
     let_go: tuple[LetGoReport, ...] = ()
     accepted_contacts: tuple[AcceptedReport, ...] = ()
+    carried_flights: tuple[CarriedFlightReport, ...] = ()
     missed_contacts: tuple[MissedContact, ...] = ()
     missed_bodies: tuple[BodyMiss, ...] = ()
     blends: tuple[BlendReport, ...] = ()
@@ -176,7 +179,9 @@ class Report:
     @property
     def needs(self) -> FitNeeds:
         """What the motion needs beside what the recording shows."""
-        return FitNeeds(self.unseen_support, self.let_go, self.accepted_contacts)
+        return FitNeeds(
+            self.unseen_support, self.let_go, self.accepted_contacts, self.carried_flights
+        )
 
     @property
     def given_up(self) -> tuple[ConstraintReport, ...]:

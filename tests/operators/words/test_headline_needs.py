@@ -2,7 +2,9 @@
 
 from dataclasses import replace
 
+import pytest
 from hangtime.operators.words.headline import accepted_lines, headline
+from hangtime.solver.data.contacts import PhaseKind
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.reports.constraints import (
     AcceptedReport,
@@ -13,6 +15,7 @@ from hangtime.solver.data.reports.constraints import (
 from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.data.reports.report import as_json
 from hangtime.solver.results.report import report
+from hangtime.solver.results.unseen_support import fit_needs
 from hangtime.solver.stages.implicit import adapt
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 
@@ -29,6 +32,26 @@ def test_all_frames_of_unseen_support_and_all_contacts_let_go_are_told() -> None
     assert "1 to 41 (4.74), 58 to 115 (1.36)" in support
     assert "Right heel 2" in contacts
     assert accepted_lines(FitNeeds()) == []
+
+
+def test_a_flight_that_something_unseen_carries_is_told_with_how_it_falls() -> None:
+    """As the hop's is, had it been recorded under another gravity and carried."""
+    fitted = fitted_hop()
+    (flight,) = (p for p in fitted.schedule.phases if p.kind is PhaseKind.FLIGHT)
+    assert fit_needs(fitted).carried_flights == ()
+    slower = fitted.performance.com.copy()
+    slower[:, 2] += (9.80665 - 7.5) / 2.0 * (fitted.performance.times - flight.start) ** 2
+    performance = replace(fitted.performance, com=slower)
+    needs = fit_needs(replace(fitted, performance=performance, carried=(flight,)))
+    (told,) = needs.carried_flights
+    assert told.acceleration == pytest.approx(7.5, abs=0.5)
+    assert told.off_mm > 10.0
+    (line,) = accepted_lines(needs)
+    assert line.startswith("Flight 1 (frames ")
+    assert f"falls at {told.acceleration:.1f} m/s²" in line
+    problem = MotionProblem()
+    made = report(adapt(fitted, problem), problem, Origin("hop"))
+    assert line in "\n".join(headline(replace(made, carried_flights=(told,))))
 
 
 def test_what_is_good_enough_is_told_with_its_amounts_and_the_artist_s_limit() -> None:
