@@ -58,7 +58,7 @@ def failure_of(fault: Fault, uid: int, of: str, translate: Translate = str) -> F
     first = missed(worst[0], translate)
     head = translate(NO_FIT if isinstance(fault, NoFit) else NO_MOTION).format(first)
     advice = sentence(replace(fault, worst=()), translate)
-    if fault.reached > 0.0:
+    if fault.goes_part:
         advice = f"{advice} {translate(REACHED).format(round(100.0 * fault.reached))}"
     return Failure(uid, of, fault, head, advice, rows)
 

@@ -81,7 +81,7 @@ def _variant(fault: Fault) -> int:
         case faults.UnreadableText():
             return fault.cure.value
         case faults.NoSolution():
-            told = (2 if fault.reached else 1) if fault.worst else 0
+            told = (2 if fault.goes_part else 1) if fault.worst else 0
             return told + (3 if _begins_far_off(fault) else 0)
         case faults.NothingTouches():
             return bool(fault.touching)

@@ -11,6 +11,8 @@ from ..row_kinds import Violation
 from ..status import Status
 from .base import Fault
 
+WHOLE = 0.995  # of the way, which rounds to all of it
+
 
 @dataclass
 class BadRecipe(Fault):
@@ -77,6 +79,12 @@ class NoSolution(Fault):
     reached: float = 0.0
     damages: tuple[Damage, ...] = ()
     fit_off_cm: float = 0.0
+
+    @property
+    def goes_part(self) -> bool:
+        """Whether the best motion goes a part of the way, by which less can be asked: one that goes
+        all of it fails for something else."""
+        return 0.0 < self.reached < WHOLE
 
 
 @dataclass

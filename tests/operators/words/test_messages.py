@@ -12,6 +12,7 @@ from typing import get_type_hints
 import hangtime.solver
 import pytest
 from hangtime.devtools.doctor.damages import stretched
+from hangtime.operators.words.failure_text import failure_of
 from hangtime.operators.words.messages import sentence, together
 from hangtime.operators.words.templates import MISSED, OUTCOMES, TEMPLATES, faults, outcomes, rigs
 from hangtime.solver.data.faults import (
@@ -124,6 +125,16 @@ def test_what_is_left_is_translated_as_well() -> None:
     seen: list[str] = []
     sentence(fault, lambda template: seen.append(template) or template)
     assert seen[1:] == [OUTCOMES[Status.STALLED], MISSED[RowKind.PIN]]
+
+
+@pytest.mark.parametrize(("reached", "told"), [(0.25, True), (0.99, True), (1.0, False)])
+def test_only_a_part_of_the_way_is_told(reached: float, told: bool) -> None:
+    elbow = Violation("Right elbow bends", RowKind.RANGE, 178.0)
+    fault = NoSolution(Status.NO_BODY, (elbow,), reached=reached)
+    text = sentence(fault)
+    assert "Right elbow bends" in text
+    assert ("of the way" in text) is told
+    assert ("of the way" in failure_of(fault, 1, "adapt").text) is told
 
 
 def test_a_fault_without_words_is_noticed() -> None:
