@@ -38,7 +38,8 @@ MISSED = {  # of a constraint, by its type
     RowKind.ORIENTATION: ANGLE_MISSED,
     RowKind.POSE: ANGLE_MISSED,
     RowKind.PUSH: "“{name}” would have to pull with {amount:.3g} body weights",
-    RowKind.FRICTION: "“{name}” slips: {amount:.3g} body weights beyond its friction",
+    RowKind.FRICTION: "“{name}” slips: {amount:.3g} body weights beyond its friction (Contact "
+    "Force sets it)",
     RowKind.PEAK: "“{name}” is exceeded by {amount:.3g} body weights",
     RowKind.SOLID: "{name} stays in by {amount:millimetres}{frame:at}",
     RowKind.RANGE: "{name} {amount:.3g}° beyond its range{frame:at}",
