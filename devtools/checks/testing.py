@@ -19,9 +19,12 @@ from .summary import read_all
 from .watched_tests import Limits, test_at, wait
 
 RUNNER = Path(__file__).with_name("run_pytest.py")
+QUICK = ("-m", "not slow")
+ELSEWHERE = [f"--ignore=tests/{name}" for name in ("blender", "solver", "installed")]
 SUITES = {
-    "core": ["tests", "--ignore=tests/blender", "--ignore=tests/installed", "-m", "not slow"],
-    "blender": ["tests/blender", "-m", "not slow"],
+    "solver": ["tests/solver", *QUICK],
+    "rest": ["tests", *ELSEWHERE, *QUICK],
+    "blender": ["tests/blender", *QUICK],
 }
 
 

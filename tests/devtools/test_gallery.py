@@ -172,6 +172,7 @@ def test_results_in_a_scene_have_a_table_and_a_count_of_their_own() -> None:
     assert "| 0.4 | 0.2 |" in scene
 
 
+@pytest.mark.slow
 def test_what_is_asked_for_is_marked_where_it_is() -> None:
     flight = When(phase="flight 1")
     case = AddedMass("case", "RightHand", share=0.1)

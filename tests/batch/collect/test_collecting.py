@@ -37,6 +37,7 @@ def table(folder: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
+@pytest.mark.slow
 def test_the_table_has_every_cell_with_values_and_figures_in_full(folder: Path) -> None:
     rows, batch = table(folder), gather(folder)
     assert [row["cell"] for row in rows] == [plan.cell for plan in batch.plans]

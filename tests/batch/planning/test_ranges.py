@@ -66,6 +66,7 @@ def test_a_value_may_stand_in_a_zip_twice_and_a_pair_does_not(tmp_path: Path) ->
     low=st.floats(-1.0, 0.9),
     width=st.floats(0.01, 2.0),
 )
+@pytest.mark.slow
 def test_a_seed_draws_the_same_samples_within_the_bounds(
     tmp_path_factory: pytest.TempPathFactory, count: int, seed: int, low: float, width: float
 ) -> None:
@@ -94,6 +95,7 @@ def test_as_many_variants_as_are_counted_before_and_samples_are_all_different(
     assert len({tuple(v.items()) for v in drawn}) == count
 
 
+@pytest.mark.slow
 def test_samples_are_drawn_from_more_combinations_than_could_ever_be_counted(
     tmp_path: Path,
 ) -> None:

@@ -35,6 +35,7 @@ def manifest_of(names: list[str]) -> Manifest:
 
 
 @given(names=st.lists(WORDS, min_size=1, max_size=5))
+@pytest.mark.slow
 def test_a_manifest_is_read_as_it_was_written_whole_or_cell_by_cell(
     tmp_path_factory: pytest.TempPathFactory, names: list[str]
 ) -> None:

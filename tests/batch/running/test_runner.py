@@ -67,6 +67,7 @@ def test_a_cell_whose_output_is_emptied_is_told_and_solved_again(
     assert lines(folder, "begin")[2:] == [cell]
 
 
+@pytest.mark.slow
 def test_the_end_tells_how_many_the_certificate_has_nothing_new_against(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -138,6 +139,7 @@ def test_what_failed_by_no_fault_of_the_input_is_tried_again_by_the_next_run(
     assert states(folder) == {"a.bvh": State.FAILED, "b.bvh": State.DONE}
 
 
+@pytest.mark.slow
 def test_a_cell_that_takes_too_long_is_ended_and_told_and_the_others_go_on(tmp_path: Path) -> None:
     planned(tmp_path, {"a.bvh": "sleep 600", "b.bvh": "sleep 0", "c.bvh": "sleep 0.01"})
     folder = tmp_path / "out"

@@ -141,11 +141,13 @@ def test_one_that_closes_its_pipe_and_stays_is_not_waited_for(told: Told) -> Non
     assert told("import os, time; os.close(1); time.sleep(100)") == "exit code -9"
 
 
+@pytest.mark.slow
 def test_one_that_was_greeted_and_neither_speaks_nor_listens_is_not_waited_for(told: Told) -> None:
     """What it is sent is more than a pipe holds."""
     assert told(GREETS_ALONE.format(loader=LOADER)) == "exit code -9"
 
 
+@pytest.mark.slow
 def test_one_whose_listener_fails_ends_and_says_so(told: Told) -> None:
     said = told(LISTENS_NO_MORE.format(loader=LOADER))
     assert said == "ZeroDivisionError: of the listener (exit code 5)"
@@ -165,6 +167,7 @@ def test_where_our_own_listener_fails_nobody_waits(
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such signal")
+@pytest.mark.slow
 def test_one_that_does_not_listen_does_not_take_blender_along(tmp_path: Path) -> None:
     program = tmp_path / "deaf.py"
     program.write_text(DEAF.format(loader=LOADER))

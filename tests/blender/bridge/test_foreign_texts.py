@@ -76,6 +76,7 @@ def test_a_results_own_texts_count_for_nothing_and_are_named(adapted, stored) ->
         assert any(f"“{name}” of “{result.name}”" in each for each in sentences)
 
 
+@pytest.mark.slow
 def test_a_take_whose_adapted_frames_are_not_known_is_not_adapted_again(adapted) -> None:
     result = adapted.hangtime.adapted
     bpy.ops.hangtime.start_from(result=True)
@@ -107,6 +108,7 @@ def test_findings_that_are_none_are_left_out_until_it_is_examined(stored) -> Non
     assert all("press Examine" in each for each in sentences)
 
 
+@pytest.mark.slow
 def test_an_examination_writes_its_texts_anew(jump) -> None:
     jump.hangtime.feet = "3"
     jump.hangtime.findings.add().name = "骨"

@@ -143,6 +143,7 @@ def test_scene_in_centimetres(relative: str, path_of: Paths) -> None:
     assert_same_motion(import_clip(path), read(path), 0.01)
 
 
+@pytest.mark.slow
 def test_what_was_guessed_is_told(path_of: Paths) -> None:
     child = import_clip(mocap_path(CHILD_BVH))
     assert (child.unit_m, child.unit_guessed, child.up, child.up_guessed) == (
@@ -190,6 +191,7 @@ def export_fbx(path: Path, **options: object) -> None:
         bpy.ops.export_scene.fbx(filepath=str(path), **options)
 
 
+@pytest.mark.slow
 def test_fbx_of_unknown_size_falls_as_bodies_do() -> None:
     """A run: gravity is right only where length and rate are. It counts frames from 0, has one in
     T-pose before, and sparse keys, which the importer joins by straight lines.

@@ -179,6 +179,7 @@ def test_an_odd_rig_is_read_and_written_as_the_plain_one(set_up: SetUp) -> None:
     _assert_written(record(armature, FRAMES), track)
 
 
+@pytest.mark.slow
 def test_keys_between_frames_are_read_and_written_there() -> None:
     expected, track = jump(), solution()
     armature = plain()

@@ -73,6 +73,7 @@ def is_red(picture: np.ndarray) -> np.ndarray:
     return (picture[..., 0] > 0.5) & (picture[..., 1:].max(axis=-1) < 0.35)
 
 
+@pytest.mark.slow
 def test_the_picture_has_the_width_asked_for_and_a_light_background(picture):
     assert picture.shape[1] == 360
     assert picture[:3].min() > 0.9

@@ -121,6 +121,7 @@ def test_a_tint_colours_its_limbs_only_in_its_span():
         assert figure.tones == ({1: m.Tone.LIMP} if figure.time >= 0.5 else {})
 
 
+@pytest.mark.slow
 def test_red_appears_where_the_sphere_is(plain, tmp_path):
     shown = picture(tmp_path, m.Sphere(HIP - 0.8 * Z))
     assert shown.shape == plain.shape
@@ -148,6 +149,7 @@ def test_each_kind_is_seen(plain, tmp_path, mark, measure):
     assert measure(picture(tmp_path, mark)) > measure(plain) + 40
 
 
+@pytest.mark.slow
 def test_a_bar_overhead_is_in_the_picture(plain, tmp_path):
     shown = picture(tmp_path, EVERY[6])
     assert len(shown) > len(plain)  # the picture reaches up to it

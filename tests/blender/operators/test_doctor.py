@@ -74,6 +74,7 @@ def test_an_option_that_would_go_unheard_is_refused(option, value, capsys) -> No
     assert f"“{option}” does not count for clip.fbx" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_recipe_is_not_overwritten(tmp_path: Path, capsys) -> None:
     recipe = tmp_path / "mine.toml"
     recipe.write_text("mass = 70\n")
@@ -189,6 +190,7 @@ def test_an_option_that_cannot_be_is_refused_in_words(option, words, capsys) -> 
     assert words in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_gaps_side_by_side_are_filled_as_without_blender() -> None:
     """Each is filled by the poses around both."""
     repairs = Repairs(missing=(MissingFrames(150, 4), MissingFrames(151, 2)))

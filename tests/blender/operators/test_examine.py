@@ -91,6 +91,7 @@ def test_what_is_wrong_is_listed_with_its_frames_and_remedies(examined) -> None:
     assert feet[0].amount == pytest.approx(RAISED, abs=0.03)
 
 
+@pytest.mark.slow
 def test_all_remedies_count_at_once_and_no_key_changes(examined) -> None:
     action, scene = examined.animation_data.action, bpy.context.scene
     before = keys_digest(action)
@@ -128,6 +129,7 @@ def test_noise_is_told_by_analyze_until_it_is_smoothed(
     assert not re.search(trembles, capfd.readouterr().out)
 
 
+@pytest.mark.slow
 def test_a_box_that_was_offered_before_a_repair_is_no_longer(examined) -> None:
     """It would stand where the recording was."""
     session().support = (examined.session_uid, (SupportBox((1, 1, 1), (0, 0, 0), 0.0),))
@@ -136,6 +138,7 @@ def test_a_box_that_was_offered_before_a_repair_is_no_longer(examined) -> None:
     assert not bpy.ops.hangtime.add_support_box.poll()
 
 
+@pytest.mark.slow
 def test_a_remedy_is_left_out_again(examined) -> None:
     scene = bpy.context.scene
     bpy.ops.hangtime.repair_all()
@@ -266,6 +269,7 @@ def test_frames_left_out_again_leave_a_recording_its_fake_user_while_a_result_li
             bpy.data.actions.remove(result)
 
 
+@pytest.mark.slow
 def test_missing_frames_are_not_put_into_a_strip(lacking) -> None:
     assert bpy.ops.hangtime.examine() == {"FINISHED"}
     data = lacking.animation_data
@@ -331,6 +335,7 @@ def test_armatures_under_one_parent_are_repaired_each_for_itself(jump) -> None:
     assert not any("repairs" in each.name for each in bpy.data.objects)
 
 
+@pytest.mark.slow
 def test_one_remedy_takes_the_place_of_the_other(examined) -> None:
     bpy.ops.hangtime.repair(kind="time scale")
     bpy.ops.hangtime.repair(kind="time scale", other=True)
@@ -348,6 +353,7 @@ def test_what_is_repaired_is_found_again_as_such(examined) -> None:
     assert all(is_applied(examined.hangtime, row) for row in findings(examined.hangtime))
 
 
+@pytest.mark.slow
 def test_a_row_leads_to_its_frame_and_bone(examined) -> None:
     bpy.context.scene.frame_set(1)
     bpy.ops.hangtime.show_finding(kind="spike")
@@ -355,6 +361,7 @@ def test_a_row_leads_to_its_frame_and_bone(examined) -> None:
     assert examined.data.bones.active.name == "LeftArm"
 
 
+@pytest.mark.slow
 def test_the_timeline_has_a_row_of_doubtful_frames(examined) -> None:
     (row,) = rows_of(examined.hangtime, lambda frame: frame)
     spike = next(bar for bar in row.bars if bar.name == "Spike")
@@ -364,6 +371,7 @@ def test_the_timeline_has_a_row_of_doubtful_frames(examined) -> None:
     assert not any(bar.used for bar in rows_of(examined.hangtime, lambda frame: frame)[0].bars)
 
 
+@pytest.mark.slow
 def test_another_key_makes_the_examination_stale(examined) -> None:
     bpy.ops.hangtime.repair_all()
     assert not look_at_examination(examined)
@@ -372,6 +380,7 @@ def test_another_key_makes_the_examination_stale(examined) -> None:
     assert examined.hangtime.examination_stale
 
 
+@pytest.mark.slow
 def test_repairs_are_undone_saved_and_exported(examined, tmp_path) -> None:
     bpy.ops.hangtime.repair_all()
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}

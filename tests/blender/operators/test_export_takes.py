@@ -64,6 +64,7 @@ def test_export_waits_for_a_result_that_is_accepted(
     assert current_action(adapted) == result
 
 
+@pytest.mark.slow
 def test_all_accepted_results_are_takes_of_one_file(
     accepted: bpy.types.Object, tmp_path: Path
 ) -> None:

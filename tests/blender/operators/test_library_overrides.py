@@ -109,6 +109,7 @@ def test_contacts_that_an_override_let_go_are_neither_chosen_nor_have_a_name(
     assert row.name == "Hand 1" in requests_of(override.hangtime, override).names
 
 
+@pytest.mark.slow
 def test_what_is_analysed_in_the_library_later_leaves_an_overrides_own_analysis(
     analysed: bpy.types.Object, tmp_path: Path
 ) -> None:

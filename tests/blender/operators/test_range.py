@@ -35,6 +35,7 @@ def spans(armature: bpy.types.Object) -> list[tuple[str, float, float]]:
     return sorted(row for row in rows if row[1] + SAME < row[2])
 
 
+@pytest.mark.slow
 def test_its_contacts_are_the_whole_action_s(cut: bpy.types.Object) -> None:
     ours = spans(cut)
     assert len(ours) == len(cut.hangtime.contacts)
@@ -65,6 +66,7 @@ def test_no_more_is_adapted_than_the_range(cut: bpy.types.Object) -> None:
     assert current_action(cut).frame_range.to_tuple() == tuple(adapted.frames[[0, -1]])
 
 
+@pytest.mark.slow
 def test_what_was_changed_about_contacts_goes_with_a_take_that_is_moved(
     jump: bpy.types.Object,
 ) -> None:

@@ -42,6 +42,7 @@ def test_the_parts_of_the_body_are_listed_with_what_is_missing() -> None:
     assert parts["right foot"].bone == "RightFoot"
 
 
+@pytest.mark.slow
 def test_a_foot_of_any_name_is_found_by_its_place() -> None:
     rigs.reset()
     armature = import_clip(mocap_path(JUMP)).armature
@@ -313,6 +314,7 @@ def test_longer_legs_perform_and_are_exported_on_their_own_armature(
     assert result_of(analysed) == first
 
 
+@pytest.mark.slow
 def test_a_stated_height_mends_a_wrong_scale() -> None:
     rigs.reset()
     armature = import_clip(mocap_path(JUMP)).armature

@@ -55,6 +55,7 @@ def test_a_figure_of_a_wrong_scale_is_told_as_such(run: bpy.types.Object, shrunk
     assert not run.hangtime.contacts
 
 
+@pytest.mark.slow
 def test_the_scale_that_is_told_mends_it(run: bpy.types.Object) -> None:
     with pytest.raises(RuntimeError) as told:
         bpy.ops.hangtime.analyze()
@@ -71,6 +72,7 @@ def test_frames_beside_the_recording_are_told_as_such(run: bpy.types.Object) -> 
         bpy.ops.hangtime.analyze()
 
 
+@pytest.mark.slow
 def test_a_contact_that_ends_before_it_begins_is_named(run: bpy.types.Object) -> None:
     """It would be left out without a word."""
     settings = run.hangtime
@@ -181,6 +183,7 @@ def test_a_result_that_is_cancelled_while_it_is_finished_is_whole(
     assert written_of(result) is not None
 
 
+@pytest.mark.slow
 def test_settings_changed_during_a_solve_are_kept_and_the_result_is_told_as_of_those_before(
     analysed: bpy.types.Object,
 ) -> None:

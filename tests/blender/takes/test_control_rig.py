@@ -169,6 +169,7 @@ def test_a_rig_made_by_hand_with_feet_and_poles_is_posed_through_these() -> None
     assert np.degrees(posed.turned.max()) < 0.05
 
 
+@pytest.mark.slow
 def test_a_figure_that_moves_as_one_takes_its_controls_along_and_turns_none() -> None:
     """Bodies say nothing of how far a pole is away: it stays so as in the take."""
     rig = ik_rig()
@@ -380,6 +381,7 @@ def test_what_pulls_from_outside_at_other_frames_alone_is_no_matter(
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
 
 
+@pytest.mark.slow
 def test_a_constraint_on_a_finger_diverts_nothing(jump: bpy.types.Object) -> None:
     finger = jump.pose.bones["LeftHandIndex1"].constraints.new("COPY_ROTATION")
     finger.target, finger.subtarget = jump, "RightHandIndex1"

@@ -74,6 +74,7 @@ def test_it_is_enabled_after_a_command_ran_without_it() -> None:
 
 
 @pytest.mark.usefixtures("_disabled")
+@pytest.mark.slow
 def test_registering_five_times_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch) -> None:
     commands: list[object] = []
     add, remove = bpy.utils.register_cli_command, bpy.utils.unregister_cli_command
@@ -128,6 +129,7 @@ def test_the_solver_stays_out_of_blenders_own_process() -> None:
     assert done.stdout.splitlines()[-1] == "set()", done.stderr
 
 
+@pytest.mark.slow
 def test_unregistering_ends_the_worker(jump: bpy.types.Object) -> None:
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
     assert len(jump.hangtime.contacts) > 0

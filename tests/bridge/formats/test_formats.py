@@ -242,6 +242,7 @@ def test_bvh_key_that_is_not_finite_names_bone_and_frame(
     assert (caught.value.bone, caught.value.frame) == ("Head", line - 18)
 
 
+@pytest.mark.slow
 def test_every_cut_of_a_bvh_is_noticed(tmp_path: Path) -> None:
     for size in range(len(BVH.rstrip()) - 1):
         with pytest.raises(UnreadableClip):
@@ -342,6 +343,7 @@ def test_asf_is_found_by_stem_then_by_number_then_alone(tmp_path: Path) -> None:
 # ---------------------------------------------------------------- recordings
 
 
+@pytest.mark.slow
 def test_both_forms_of_one_recording_agree() -> None:
     """The BVH was made without the thorax's and wrists' lengths: so legs and spine are compared in
     place, the arms and head from the neck on."""

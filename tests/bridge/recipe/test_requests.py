@@ -52,6 +52,7 @@ def test_every_kind_of_request_is_tried() -> None:
 
 @settings(max_examples=40)
 @given(PROBLEMS)
+@pytest.mark.slow
 def test_what_is_written_is_read_as_the_same(problem: MotionProblem) -> None:
     assert parse_recipe(write_recipe(problem)).problem == problem
 

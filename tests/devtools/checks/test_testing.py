@@ -51,6 +51,7 @@ def test_a_suite_that_hangs_tells_its_test(tmp_path: Path) -> None:
     assert "test_hangs" in said
 
 
+@pytest.mark.slow
 def test_a_test_that_ends_the_process_is_named(tmp_path: Path) -> None:
     said = lost(tmp_path, DIES, Limits(60.0, 60.0))
     assert "ended with code 7" in said

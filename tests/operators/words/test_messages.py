@@ -165,6 +165,7 @@ def test_a_solve_that_begins_from_a_far_fit_points_there_and_not_to_what_was_ask
     assert sentence(stopped) == OUTCOMES[Status.STOPPED]
 
 
+@pytest.mark.slow
 def test_a_failed_solve_names_what_is_wrong_with_the_recording_and_what_mends_it() -> None:
     """A shank that grows by 5 %, unrepaired."""
     clip = stretched(0.05).of(load_recording(JUMP)).recording

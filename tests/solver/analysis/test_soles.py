@@ -106,6 +106,7 @@ def test_floor_under_the_soles() -> None:
     assert standing == pytest.approx(floor, abs=0.01)
 
 
+@pytest.mark.slow
 def test_the_doctor_has_a_figure_stand_on_its_soles() -> None:
     """Also one that was read in inches, with another axis up."""
     stands = shod(without_toes())

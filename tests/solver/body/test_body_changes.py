@@ -277,6 +277,7 @@ def test_inverse_dynamics_of_a_changed_figure_is_mujocos(gravity: float, table: 
     place=st.tuples(*[st.floats(-0.5, 0.5)] * 3),
     which=st.integers(0, 9),
 )
+@pytest.mark.slow
 def test_composite_inertia_is_mujocos(
     mass: float, place: tuple[float, float, float], which: int
 ) -> None:

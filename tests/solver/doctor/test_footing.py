@@ -260,6 +260,7 @@ def test_feet_that_float_sink_or_slide_are_told_by_point_and_frames() -> None:
     assert FootFaultKind.SLIDES in {f.kind for f in find_feet(perform(slid, character()))}
 
 
+@pytest.mark.slow
 def test_feet_that_slide_are_noted_and_those_that_swing_low_are_not() -> None:
     """As video capture has it: the body to and fro, twice in a stance."""
     assert FindingKind.SLIDING_FEET not in {f.kind for f in diagnose(jump()).findings}

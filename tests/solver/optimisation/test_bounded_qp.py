@@ -88,6 +88,7 @@ def test_multipliers_push_from_the_bound_they_are_at_whatever_the_guess(seed: in
 
 @settings(max_examples=20, deadline=None)
 @given(SEED, st.floats(1e-4, 1e-1))
+@pytest.mark.slow
 def test_rows_that_hardly_differ_are_told_apart(seed: int, width: float) -> None:
     """A torque's at instants close together, kept between narrow bounds: of such programs a
     primal-dual active set method cycles in most."""

@@ -202,6 +202,7 @@ def test_a_lift_that_waits_explains_what_carried_the_body() -> None:
         np.testing.assert_allclose(contact.place, same.place, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_only_ground_at_rest_beneath_the_feet_explains_anything() -> None:
     for changed in (
         {"role": SceneRole.OBSTACLE},
@@ -245,6 +246,7 @@ def test_a_body_that_hangs_has_no_box() -> None:
     assert all(isinstance(each, UnseenSupport) and each.boxes == () for each in found)
 
 
+@pytest.mark.slow
 def test_a_worker_looks_again_where_what_was_stood_on_is_another() -> None:
     service, recording = Service(), drop()
 
@@ -261,6 +263,7 @@ def test_a_worker_looks_again_where_what_was_stood_on_is_another() -> None:
     assert not explained(replace(box, positions=box.positions - [0.0, 0.0, 0.1]))
 
 
+@pytest.mark.slow
 def test_what_is_known_of_other_frames_leaves_a_drop_a_flight() -> None:
     there = replace(drop(), known=(KnownContacts(-500.0, -400.0, ()),))
     was, now = (measure(each, MotionProblem()).analysis.schedule for each in (drop(), there))

@@ -117,6 +117,7 @@ def test_a_landing_that_hardly_moves_changes_hardly_anything() -> None:
     assert crouch(near) == pytest.approx(crouch(adapted(0.0)), abs=0.002)
 
 
+@pytest.mark.slow
 def test_a_hop_that_is_carried_as_a_whole_keeps_its_times() -> None:
     pins = tuple(
         Pin(phase, phase, offset=(0.4, 0.2, 0.0), axes=OffsetAxes.WORLD)

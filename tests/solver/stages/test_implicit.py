@@ -186,6 +186,7 @@ def test_ten_metres_further_ends_in_bounded_steps(height: float) -> None:
     assert np.linalg.norm(contact_places(adaptation) - motion.places, axis=1).max() > 1.0
 
 
+@pytest.mark.slow
 def test_progress_is_reported_step_by_step() -> None:
     seen: list[Step] = []
     problem = MotionProblem(pins=(EDITS["up"],))

@@ -105,6 +105,7 @@ def test_reduced_dynamics_have_no_torques_to_weigh(method: Method) -> None:
         adapt(fitted_hop(), MotionProblem(requests=Requests(solution=solution)))
 
 
+@pytest.mark.slow
 def test_what_needs_no_torques_is_lessened_with_reduced_dynamics() -> None:
     weights = ((ObjectiveKind.ANGLE_SMOOTHNESS, 1.0), (ObjectiveKind.CLOSENESS, 1.0))
     solution = SolverOptions(Method.EXPLICIT, Dynamics.REDUCED, weights)

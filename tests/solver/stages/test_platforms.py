@@ -170,6 +170,7 @@ def test_from_a_train_onto_another_the_body_leaves_with_its_speed() -> None:
     np.testing.assert_allclose(gained, [[0.5, 0.2, 0.0]], atol=1e-4)
 
 
+@pytest.mark.slow
 def test_the_report_tells_who_rides_and_who_is_carried_on() -> None:
     name = "from a train"
     told = report(solved(name), CASES[name], Origin("hop.bvh")).moving_ground

@@ -83,6 +83,7 @@ def test_a_hand_stays_out_of_the_thigh() -> None:
     assert kept["Left hand in left thigh"].met
 
 
+@pytest.mark.slow
 def test_limbs_alone_are_in_each_other_as_in_the_whole_world() -> None:
     world = set_up(fitted_hop(), in_thigh()).solid
     assert world is not None

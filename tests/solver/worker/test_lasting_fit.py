@@ -85,6 +85,7 @@ def hung() -> AdaptationResult:
     return solve(hanging, StageClock())
 
 
+@pytest.mark.slow
 def test_a_body_that_hangs_is_fitted_without_any_contact() -> None:
     made = hung()
     assert made.schedule.contacts == ()
@@ -212,6 +213,7 @@ def test_no_moment_of_flight_is_left_between_a_contact_and_what_carries_unseen()
     assert apart.start == there.start
 
 
+@pytest.mark.slow
 def test_a_figure_without_toes_keeps_its_contacts() -> None:
     """Heel and ball on one bone cannot come nearer to each other as one of them rises."""
     run = load_recording("BMC_run.bvh")

@@ -36,6 +36,7 @@ def flat_rig() -> bpy.types.Object:
     return armature
 
 
+@pytest.mark.slow
 def test_flat_deform_bones_are_found_with_a_pelvis_above_them() -> None:
     armature = flat_rig()
     find_parts(armature)

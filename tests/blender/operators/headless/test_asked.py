@@ -132,6 +132,7 @@ def test_a_recipe_asks_for_few_keys(clip: Path, tmp_path: Path) -> None:
     assert sum(key.interpolation == "BEZIER" for key in keys) == told["keys"]
 
 
+@pytest.mark.slow
 def test_a_blend_is_a_clip_too(clip: Path, tmp_path: Path, capsys) -> None:
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     import_clip(clip)
@@ -164,6 +165,7 @@ def test_of_a_blend_with_two_characters_the_one_that_is_read_is_named_and_may_be
     assert "name one that it has: Jumper, Runner" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_the_starter_recipe_is_valid_and_names_the_landing(
     clip: Path, tmp_path: Path, capsys
 ) -> None:

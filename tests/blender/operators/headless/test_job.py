@@ -74,6 +74,7 @@ def test_the_report_tells_what_was_done_to_the_take(done: Path) -> None:
     assert "  0.300 m along the ground, 0.200 m up\n" in text
 
 
+@pytest.mark.slow
 def test_pinned_points_stay_where_they_were_sent(done: Path) -> None:
     """By the written keys, as Blender evaluates them, in .blend and FBX alike."""
     report = json.loads((done / "report.json").read_text(encoding="utf-8"))

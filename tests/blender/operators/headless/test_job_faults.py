@@ -166,6 +166,7 @@ def test_no_solution_leaves_a_report(clip: Path, tmp_path: Path, capsys) -> None
     assert report["status"] in ("stalled", "too many steps")
 
 
+@pytest.mark.slow
 def test_bones_that_a_usd_could_not_tell_apart_are_told_before_the_solve(
     clip: Path, tmp_path: Path, monkeypatch, capsys
 ) -> None:

@@ -128,6 +128,7 @@ def test_a_file_that_is_no_preset_is_refused(tmp_path: Path) -> None:
         bpy.ops.hangtime.import_bone_preset(filepath=str(path))
 
 
+@pytest.mark.slow
 def test_a_rest_pose_on_the_first_frame_is_told_and_left_out() -> None:
     armature = build(RIGS["mixamo"], actor())
     bpy.context.view_layer.objects.active = armature

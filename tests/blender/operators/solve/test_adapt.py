@@ -91,6 +91,7 @@ def test_what_was_changed_is_kept_by_another_analysis(analysed: bpy.types.Object
 # ---------------------------------------------------------------- requests
 
 
+@pytest.mark.slow
 def test_a_text_of_requests_is_met(analysed: bpy.types.Object) -> None:
     analysed.hangtime.keep_out, analysed.hangtime.human_ranges = False, False  # quicker
     ask_by_text(
@@ -160,6 +161,7 @@ def test_ranges_are_hard_or_wider_where_asked(analysed: bpy.types.Object) -> Non
     assert problem_of(analysed.hangtime, recording).requests.solution.human is HumanRanges.HARD
 
 
+@pytest.mark.slow
 def test_longer_limbs_perform_on_an_armature_of_their_own(analysed: bpy.types.Object) -> None:
     analysed.hangtime.keep_out, analysed.hangtime.human_ranges = False, False  # quicker
     bones = '["LeftUpLeg", "RightUpLeg", "LeftLeg", "RightLeg"]'

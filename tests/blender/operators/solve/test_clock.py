@@ -44,6 +44,7 @@ def test_a_scene_that_is_stretched_in_time_is_refused(
 
 
 @pytest.mark.usefixtures("stretched")
+@pytest.mark.slow
 def test_a_scene_that_is_stretched_in_time_is_not_exported(tmp_path: Path) -> None:
     path = tmp_path / "jump.fbx"
     with pytest.raises(RuntimeError, match=STRETCHED):
@@ -134,6 +135,7 @@ def test_a_scene_in_another_unit_with_an_armature_as_large_is_the_same(
     assert current_action(adapted).hangtime.stale == ""
 
 
+@pytest.mark.slow
 def test_export_tells_what_is_no_longer_physical(
     adapted: bpy.types.Object, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -32,6 +32,7 @@ def analysed(armature: bpy.types.Object) -> dict[str, tuple[float, float]]:
     return {row.name: (row.start_frame, row.end_frame) for row in rows}
 
 
+@pytest.mark.slow
 def test_a_result_of_a_result_has_the_same_contacts(adapted: bpy.types.Object) -> None:
     (known,) = known_contacts(current_action(adapted))
     assert bpy.ops.hangtime.start_from(result=True) == {"FINISHED"}
@@ -49,6 +50,7 @@ def test_a_result_of_a_result_has_the_same_contacts(adapted: bpy.types.Object) -
     assert told == [pytest.approx(span, abs=CUT) for _, *span in known.contacts]
 
 
+@pytest.mark.slow
 def test_a_take_that_was_retimed_since_is_looked_at(adapted: bpy.types.Object) -> None:
     action = current_action(adapted)
     (known,) = known_contacts(action)

@@ -27,6 +27,7 @@ def missed(armature: bpy.types.Object) -> tuple[MissedContact, ...]:
     return complete(missed_contacts(armature, schedule, kept(armature.hangtime.adapted).traces))
 
 
+@pytest.mark.slow
 def test_a_leg_that_is_longer_than_solved_is_told_by_its_points(
     adapted: bpy.types.Object,
 ) -> None:

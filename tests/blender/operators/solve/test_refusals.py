@@ -365,6 +365,7 @@ def test_a_frame_rate_that_no_one_kept_may_be_what_changed(analysed: bpy.types.O
         bpy.ops.hangtime.fit()
 
 
+@pytest.mark.slow
 def test_frames_that_were_not_analysed_are_named(analysed: bpy.types.Object) -> None:
     """As ticking, or dragging, Frame Range chooses them. At the analysis' own all is as before."""
     settings = analysed.hangtime

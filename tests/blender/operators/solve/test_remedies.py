@@ -19,6 +19,7 @@ from hangtime.tests.blender.helpers import rigs
 pytestmark = pytest.mark.usefixtures("_enabled")
 
 
+@pytest.mark.slow
 def test_a_wrong_frame_rate_is_told_and_mended(jump: bpy.types.Object) -> None:
     scene = bpy.context.scene
     scene.render.fps, scene.render.fps_base = 24, 1.0
@@ -30,6 +31,7 @@ def test_a_wrong_frame_rate_is_told_and_mended(jump: bpy.types.Object) -> None:
 
 
 @pytest.mark.usefixtures("jump")
+@pytest.mark.slow
 def test_a_wrong_rate_of_ntsc_s_is_mended_by_another() -> None:
     scene = bpy.context.scene
     scene.render.fps, scene.render.fps_base = 24, 1.001

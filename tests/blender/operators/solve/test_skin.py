@@ -26,6 +26,7 @@ def analyse() -> None:
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
 
 
+@pytest.mark.slow
 def test_shapes_are_the_meshs_unless_the_bones_are_chosen(jump: bpy.types.Object) -> None:
     analyse()
     from_bones = shank(jump)

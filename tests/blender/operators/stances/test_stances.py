@@ -203,6 +203,7 @@ def test_a_copied_character_leaves_the_originals_empty_alone(analysed: bpy.types
     np.testing.assert_allclose(own.location, landing(copy.hangtime)[0].place, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_pins_call_contacts_what_they_are_called_after_the_corrections(
     analysed: bpy.types.Object,
 ) -> None:
