@@ -73,8 +73,8 @@ def in_slices(
         at += count
         ended = perf_counter()
         wanted = min(SLICE_S + GOING_BACK * (ended - looked), LONGEST_SLICE_S)
-        in_time = int(count * min(wanted / (ended - began), 8.0))
-        to_go_back = round(count * (ended - looked) / (looked - began))
+        in_time = int(count * min(wanted / max(ended - began, 1e-9), 8.0))
+        to_go_back = round(count * (ended - looked) / max(looked - began, 1e-9))
         count = max(fewest, in_time, min(to_go_back, FEWEST_FRAMES))
         yield min(at / len(frames), 1.0)
     return found

@@ -23,12 +23,18 @@ def keys_digest(action: bpy.types.Action) -> str:
     differs."""
     found = 0
     for curve in all_curves(action):
-        found = crc32(f"{curve.data_path}[{curve.array_index}]{curve.mute}".encode(), found)
-        found = _keys(curve, found)
-        found = crc32(curve.extrapolation.encode(), found)
-        for modifier in curve.modifiers:
-            found = crc32(repr(stored(modifier)).encode(), found)
+        found = curve_digest(curve, found)
     return str(found)
+
+
+def curve_digest(curve: bpy.types.FCurve, found: int = 0) -> int:
+    """The same of one curve. found: of others, which it is added to."""
+    found = crc32(f"{curve.data_path}[{curve.array_index}]{curve.mute}".encode(), found)
+    found = _keys(curve, found)
+    found = crc32(curve.extrapolation.encode(), found)
+    for modifier in curve.modifiers:
+        found = crc32(repr(stored(modifier)).encode(), found)
+    return found
 
 
 def _keys(curve: bpy.types.FCurve, found: int) -> int:

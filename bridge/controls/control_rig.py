@@ -18,7 +18,7 @@ from ..armature.incremental import Incremental, in_slices
 from ..armature.poses import Poses, metres_per_unit, sample
 from .choice import Group, all_responses, felt_controls, used_groups
 from .driven import candidates
-from .followed import acting, rig_digest, telling_frames
+from .followed import FAINT, influences_over, rig_digest, telling_frames
 from .inverse import Inverse, Inverted
 from .needed import Effects, effects_at
 from .posing import Posing
@@ -77,18 +77,22 @@ def found_controls(
 
     They are remembered: to try them takes seconds, and each solve asks. Raises NoControls.
     """
-    states = yield from acting(armature, frames, showing)
+    acts = yield from influences_over(armature, frames, showing)
     with showing():
         made = rig_digest(armature)
-    key = armature.session_uid, bodies, made, frames.tobytes(), states.tobytes()
+    key = armature.session_uid, bodies, made, frames.tobytes(), acts.round(3).tobytes()
     remembered = _remembered()
-    if key not in remembered:
-        at = telling_frames(frames, states)
-        found = yield from _tried(armature, bodies, at, showing)
+    if key in remembered:
+        return replace(remembered[key], armature=armature)
+    at = telling_frames(frames, acts > FAINT)
+    found = yield from _tried(armature, bodies, at, showing)
+    with showing():
+        unchanged = rig_digest(armature) == made
+    if unchanged:
         while len(remembered) >= _REMEMBERED:
             del remembered[next(iter(remembered))]
         remembered[key] = found
-    return replace(remembered[key], armature=armature)
+    return found
 
 
 @cache

@@ -3,7 +3,7 @@ whether the rig is made as it was."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, nullcontext
 from zlib import crc32
 
@@ -12,18 +12,21 @@ import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
 from ..accessors import armature_data, current_action, current_scene, pose_of, present
+from ..armature import fcurves
 from ..armature.incremental import Incremental, in_slices
-from ..armature.keys_digest import keys_digest, stored
-from ..armature.poses import evaluated
+from ..armature.keys_digest import curve_digest, keys_digest, stored
+from ..armature.poses import evaluated, metres_per_unit
 from .driven import constraints_of
 
 LOOKS = 3  # frames at which a rig is looked at, beside one for each state of its switches
 FAINT = 1e-3  # influence, below which a switch is off
 # How much a constraint acts, and misses, goes with the frame that is shown.
 _OF_FRAME = frozenset({"influence", "error_location", "error_rotation"})
-_RESTS = ("matrix_local", "use_local_location", "use_inherit_rotation", "inherit_scale")
-_POSES = ("lock_location", "lock_rotation", "lock_scale", "custom_shape", "ik_stretch")
-_CHAINS = ("use_ik_limit_x", "use_ik_limit_y", "use_ik_limit_z", "lock_ik_x", "lock_ik_y")
+_RESTS = (
+    *("matrix_local", "use_connect", "use_local_location", "use_inherit_rotation"),
+    "inherit_scale",
+)
+_POSES = ("custom_shape", "lock_", "ik_", "use_ik_")  # what their names begin with
 
 
 def telling_frames(frames: FloatArray, states: BoolArray) -> FloatArray:
@@ -42,13 +45,22 @@ def acting(
     showing: Callable[[], AbstractContextManager[object]] = nullcontext,
 ) -> Incremental[BoolArray]:
     """(T, N) which constraints of an armature act at frames (T,)."""
+    return (yield from influences_over(armature, frames, showing)) > FAINT
+
+
+def influences_over(
+    armature: bpy.types.Object,
+    frames: FloatArray,
+    showing: Callable[[], AbstractContextManager[object]] = nullcontext,
+) -> Incremental[FloatArray]:
+    """(T, N) how much each constraint of an armature acts at frames (T,)."""
     influences = Influences(armature)
 
     def look(part: FloatArray) -> FloatArray:
         return np.stack([influences.at(float(frame)) for frame in part])
 
     parts = yield from in_slices(frames, look, showing)
-    return np.asarray(np.concatenate(parts) > FAINT)
+    return np.concatenate(parts)
 
 
 class Influences:
@@ -76,9 +88,9 @@ class Influences:
 
 
 def rig_digest(armature: bpy.types.Object) -> str:
-    """A number for how a rig's bones, constraints and drivers are made and its take is keyed;
-    another where something differs that tells which bones move which. How much each constraint acts
-    is not in it."""
+    """A number for how a rig's bones, constraints and drivers are made, its take is keyed and what
+    has no keys is posed; another where something differs that tells which bones move which. How
+    much each constraint acts is not in it."""
     action, found = current_action(armature), 0
     for part in _parts(armature):
         found = crc32(repr(part).encode(), found)
@@ -86,17 +98,23 @@ def rig_digest(armature: bpy.types.Object) -> str:
 
 
 def _parts(armature: bpy.types.Object) -> Iterator[object]:
-    for rest in armature_data(armature).bones:
+    data = armature_data(armature)
+    yield metres_per_unit(current_scene()), armature.scale.to_tuple(), data.pose_position
+    for rest in data.bones:
         yield rest.name, rest.parent and rest.parent.name, _values(rest, _RESTS)
+    keyed = {fcurves.bone_of(curve.data_path) for curve in fcurves.curves_of(armature)}
     for bone in pose_of(armature).bones:
-        yield _values(bone, _POSES + _CHAINS)
+        names = (each.identifier for each in bone.bl_rna.properties)
+        yield _values(bone, [name for name in names if name.startswith(_POSES)])
+        yield None if bone.name in keyed else repr(bone.matrix_basis)
         for constraint in bone.constraints:
             yield constraint.type, stored(constraint, _OF_FRAME)
-    data = armature.animation_data
-    for curve in () if data is None else data.drivers:
-        yield curve.data_path, curve.array_index, curve.mute, stored(present(curve.driver))
+    animated = armature.animation_data
+    for curve in () if animated is None else animated.drivers:
+        driver = present(curve.driver)
+        yield curve_digest(curve), driver.is_valid, stored(driver)
 
 
-def _values(thing: bpy.types.bpy_struct, names: tuple[str, ...]) -> list[object]:
+def _values(thing: bpy.types.bpy_struct, names: Iterable[str]) -> list[object]:
     values = (getattr(thing, name) for name in names)
     return [tuple(each) if hasattr(each, "__len__") else each for each in values]

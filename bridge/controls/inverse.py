@@ -206,7 +206,8 @@ class Inverse:
             if best.size <= enough or agreeing == AGREEING:
                 break
             other = self._solved(animated, start, self._look(animated, start, t), t)
-            agreeing += abs(other[1].cost - best.cost) < SAME * best.cost
+            agree = abs(other[1].cost - best.cost) < SAME * best.cost
+            agreeing = agreeing + 1 if agree else agreeing * (other[1].cost > best.cost)
             if other[1].cost < best.cost:
                 offsets, best = other
         met = best.size < LOST

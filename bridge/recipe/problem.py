@@ -64,6 +64,7 @@ from ...solver.data.faults import (
     BoneTaken,
     DependentRows,
     Fault,
+    FitNeedsSupport,
     MissingPart,
     NotBetweenFrames,
     NothingLeft,
@@ -233,6 +234,8 @@ def _places(values: dict[str, Any], fault: Fault) -> list[KeyPath]:
         case UnknownContactName():
             contacts = enumerate(values.get("contact", ()))
             return [("contact", i, "name") for i, entry in contacts if entry["name"] == fault.name]
+        case FitNeedsSupport():
+            return [("unseen_support",)]
         case OddScale():
             return [(RECORDING.header, "scale")]
         case NotBetweenFrames():

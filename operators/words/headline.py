@@ -4,7 +4,6 @@ accepted, what failed."""
 from collections.abc import Sequence
 
 from ...solver.data.constants import STANDARD_GRAVITY
-from ...solver.data.contacts import phase_title
 from ...solver.data.faults import NoFit, NoSolution
 from ...solver.data.reports.certificate import CertificateItem, CertificateLine
 from ...solver.data.reports.constraints import AcceptedReport, ConstraintReport, FitNeeds
@@ -173,10 +172,10 @@ def accepted_lines(needs: FitNeeds) -> list[str]:
         )
         lines.append(f"Something unseen carries the body in frames (by body weights) {spans}")
     lines += [
-        f"{phase_title(each.phase)} (frames {each.first_frame:.0f} to {each.last_frame:.0f}) falls "
-        f"at {each.acceleration:.1f} m/s², up to {length(each.off_mm / 1000.0)} off any free fall, "
-        "so something unseen carries it; correct the contacts before and after it, or mend the "
-        "recording there"
+        f"In the flight that was found from frame {each.first_frame:.0f} to {each.last_frame:.0f} "
+        f"the body falls at {each.acceleration:.1f} m/s², up to {length(each.off_mm / 1000.0)} off "
+        "any free fall, so something unseen carries it; correct the contacts before and after it, "
+        "or mend the recording there"
         for each in needs.carried_flights
     ]
     if needs.let_go:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.constants import STANDARD_GRAVITY, UP
+from ..data.contacts import Interval
 from ..data.reports.constraints import (
     AcceptedReport,
     CarriedFlightReport,
@@ -15,6 +16,7 @@ from ..data.reports.constraints import (
 )
 from ..fitting.fit import Fit
 from ..transcription.motion import Motion, pinned_instants
+from ..unseen.free_fall import clear_falls
 from .flight_summary import scene_frame
 
 SAMPLE_RATE = 500.0  # Hz
@@ -64,12 +66,13 @@ def fit_needs(fit: Fit, motion: Motion | None = None) -> FitNeeds:
 
 
 def carried_flights(fit: Fit) -> Iterator[CarriedFlightReport]:
-    """The flights that were found, in which a fit has something unseen carry the body; of one of
-    so few frames that they tell no fall nothing is told."""
+    """The flights that were found, in which a fit has something unseen carry the body, and which
+    are no clear falls; of one of so few frames that they tell no fall nothing is told."""
     times, com = fit.performance.times, fit.performance.com
     for each in fit.carried:
         during = (times >= each.start) & (times <= each.end)
-        if np.count_nonzero(during) < LEAST_FRAMES:
+        flight = Interval(each.start, each.end)
+        if np.count_nonzero(during) < LEAST_FRAMES or clear_falls(times, com, [flight]):
             continue
         t, places = times[during] - each.start, com[during]
         without_fall = places + 0.5 * STANDARD_GRAVITY * np.outer(t**2, UP)

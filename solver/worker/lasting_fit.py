@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..analysis.performance import Performance, leans, snap_tolerance
-from ..data.contacts import ContactSchedule, Interval, PhaseKind, gaps
+from ..data.contacts import ContactSchedule, Interval, Phase, PhaseKind, gaps
 from ..data.row_kinds import RowKind
 from ..doctor.local_poses import runs
 from ..fitting.fit import Fit, LetGo, fit
@@ -69,8 +69,13 @@ def lasting_fit(
     if doubted:
         found = _nearer(found, _unseen_too(schedule, doubted), rides, progress)
     unseen = found.schedule.unseen
-    carried = (f for f in flights if any(u.start < f.end and u.end > f.start for u in unseen))
-    return replace(found, let_go=tuple(let_go), carried=tuple(carried))
+    carried = tuple(flight for flight in flights if any(_is_mostly_in(flight, u) for u in unseen))
+    return replace(found, let_go=tuple(let_go), carried=carried)
+
+
+def _is_mostly_in(flight: Phase, unseen: Interval) -> bool:
+    both = min(flight.end, unseen.end) - max(flight.start, unseen.start)
+    return both > 0.5 * (flight.end - flight.start)
 
 
 def _nearer(found: Fit, told: ContactSchedule, rides: Rides, progress: Progress | None) -> Fit:

@@ -21,7 +21,7 @@ WINDOW = 0.2  # s, of the lines that tell which feet stand; a stance's own is as
 TREMOR = 0.1  # m/s
 LIFTED = 0.05  # m above the other foot: a foot that is lifted, and no noise
 STANDING_SPEED_UP = 0.15  # m/s, up or down, of a foot that stands
-LEAST_STANCE = 0.25  # s
+LEAST_STANCE, FEWEST = 0.25, 6  # s; and frames, so that a cubic leaves something
 LEAST_STANDING, LEAST_SHARE = 0.3, 0.1  # s in all, and of a clip
 ROLLING = 0.015  # m, by which honest feet go in a stance; twice that is the most
 # A stance's ends are not sharp, so that feet which roll count as sliding: 3 cm more than of others.
@@ -149,7 +149,7 @@ def _lines(
 def _long(stands: BoolArray, rate: float) -> Iterator[slice]:
     """Frames of the stances that tell a speed."""
     for first, last in runs(stands):
-        if last - first >= LEAST_STANCE * rate:
+        if last - first >= max(LEAST_STANCE * rate, FEWEST - 1):
             yield slice(first, last + 1)
 
 

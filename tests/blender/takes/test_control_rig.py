@@ -280,10 +280,29 @@ def test_controls_are_tried_once_and_anew_where_the_rig_was_changed(
     assert "shin.L" in changed.controls
     assert "knee_pole.L" not in changed.controls
     rig.pose.bones["shin.L"].constraints[0].mute = False
+    for change in (keyed_turn, connected, weaker, moved_pole):
+        tried = looks["all"]
+        change(rig)
+        complete(found_controls(rig, bodies, frames))
+        assert looks["all"] > tried, change
+
+
+def keyed_turn(rig: bpy.types.Object) -> None:
     rig.pose.bones["hips"].keyframe_insert("rotation_quaternion", frame=1)
-    tried = looks["all"]
-    complete(found_controls(rig, bodies, frames))
-    assert looks["all"] > tried
+
+
+def connected(rig: bpy.types.Object) -> None:
+    bpy.ops.object.mode_set(mode="EDIT")
+    rig.data.edit_bones["foot.L"].use_connect = True
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def weaker(rig: bpy.types.Object) -> None:
+    rig.pose.bones["shin.L"].constraints[0].influence = 0.3
+
+
+def moved_pole(rig: bpy.types.Object) -> None:
+    rig.pose.bones["knee_pole.L"].location.x = 0.1
 
 
 def test_bones_that_follow_another_armature_are_refused_before_a_solve(
