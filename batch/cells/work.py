@@ -30,7 +30,8 @@ from ...solver.data.reports.recording import Origin
 from ...solver.data.requests import Requests
 from ...solver.doctor.examination.diagnose import diagnose
 from ...solver.results.report import fit_quality
-from ...solver.worker.pipeline import Subject, measure, no_fit, require_shown, solve
+from ...solver.results.unseen_support import refuse_unseen
+from ...solver.worker.pipeline import Subject, measure, no_fit, solve
 from ..planning.blender_need import needs_blender, require_blender
 from ..planning.clips import clip_sha256
 from ..planning.recipes import VariedRecipe
@@ -128,7 +129,7 @@ def check_cell(
     counted = {"findings": float(len(found))}
     if not fitted.solved:
         return Done(told, counted, no_fit(loaded.subject, fitted, examined=True))
-    require_shown(loaded.subject, fitted)
+    refuse_unseen(loaded.subject.problem, fitted)
     quality = fit_quality(fitted)
     return Done((nearness(quality), *told), counted | fit_figures(quality))
 

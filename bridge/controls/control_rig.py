@@ -110,7 +110,7 @@ def _tried(
     """The controls of bodies, tried at frames (L,). Raises NoControls."""
     names = candidates(armature, bodies)
     felt: set[str] = set()
-    found = yield from in_slices(at, partial(_felt, armature, names, bodies), showing, 1)
+    found = yield from in_slices(at, partial(_felt, armature, names, bodies), showing, fewest=1)
     for part in found:
         felt.update(part)
     names = [name for name in names if name in felt]
@@ -120,7 +120,7 @@ def _tried(
     with showing():
         parents = parents_of(armature, sample(armature, at[:1]), bodies)
     yield None
-    looked = yield from in_slices(at, partial(_looks, posing, parents), showing, 1)
+    looked = yield from in_slices(at, partial(_looks, posing, parents), showing, fewest=1)
     looks = [look for part in looked for look in part]
     groups = used_groups(posing, [(look.responses, look.effects) for look in looks])
     if not groups:  # they move something, but nothing that hangs together
@@ -198,7 +198,7 @@ def control_poses(
         with posing.kept():
             return [inverse.solve(index[float(frame)]) for frame in frames]
 
-    parts = yield from in_slices(track.frames, look, showing, 1)
+    parts = yield from in_slices(track.frames, look, showing, fewest=1)
     solved = [each for part in parts for each in part]
 
     def look_again(frames: FloatArray) -> None:

@@ -12,7 +12,8 @@ from ...solver.arrays import FloatArray
 from ...solver.data.constants import STANDARD_GRAVITY, UP
 from ...solver.data.problem import MotionProblem, Unseen
 from ...solver.fitting.fit import Fit
-from ...solver.worker.pipeline import fit_subject, no_fit, require_shown
+from ...solver.results.unseen_support import refuse_unseen
+from ...solver.worker.pipeline import fit_subject, no_fit
 from .contacts import joined
 from .trials import FEET, UNIT, GroundForces, Trial
 
@@ -63,7 +64,7 @@ def fit_trial(trial: Trial) -> FittedTrial:
     fitted = fit_subject(loaded.subject, stages)
     if not fitted.solved:
         raise no_fit(loaded.subject, fitted)
-    require_shown(loaded.subject, fitted)
+    refuse_unseen(loaded.subject.problem, fitted)
     start = (float(loaded.subject.recording.frames[0]) - 1.0) / loaded.subject.recording.rate
     return FittedTrial(trial, fitted, start, stages.done[-1].seconds)
 

@@ -7,6 +7,8 @@ import numpy as np
 from ..arrays import FloatArray
 from ..data.constants import STANDARD_GRAVITY, UP
 from ..data.contacts import Interval
+from ..data.faults import FitNeedsSupport
+from ..data.problem import MotionProblem, Unseen
 from ..data.reports.constraints import (
     AcceptedReport,
     CarriedFlightReport,
@@ -47,6 +49,17 @@ def unseen_support(fit: Fit, motion: Motion) -> Iterator[UnseenSupportReport]:
             peak_frame=scene_frame(fit, float(times[peak])),
             moment_bw_m=float(moments[part].max()),
         )
+
+
+def refuse_unseen(problem: MotionProblem, fit: Fit) -> None:
+    """Raises FitNeedsSupport where something unseen carries the body in a fit, and the problem
+    refuses that: what the analysis told by itself it refused before."""
+    if problem.unseen is not Unseen.REFUSE:
+        return
+    carried = tuple(unseen_support(fit, fit.motion))
+    if carried:
+        spans = ((round(each.first_frame), round(each.last_frame)) for each in carried)
+        raise FitNeedsSupport(tuple(spans))
 
 
 def let_go(fit: Fit) -> Iterator[LetGoReport]:

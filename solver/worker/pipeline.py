@@ -24,7 +24,6 @@ from ..body.inverse_dynamics import InverseDynamics
 from ..constraints.bone_names import check_bones
 from ..data.contacts import ContactSchedule, gaps
 from ..data.faults import (
-    FitNeedsSupport,
     NoFit,
     NoSolution,
     Treadmill,
@@ -32,7 +31,7 @@ from ..data.faults import (
     computable,
 )
 from ..data.loop import Cycle
-from ..data.problem import MotionProblem, Unseen
+from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack, Recording
 from ..data.reports.certificate import CertificateItem
 from ..data.reports.jumps import TimeMap
@@ -61,7 +60,7 @@ from ..results.joint_report import joint_turns
 from ..results.last_stance import last_stance_move
 from ..results.report import fit_quality, report, time_map
 from ..results.trace_sampling import motion_traces, recorded_traces
-from ..results.unseen_support import unseen_support
+from ..results.unseen_support import refuse_unseen
 from ..results.violations import most_telling
 from ..scene.checks import check_scene
 from ..solid.flesh import shape_flesh
@@ -305,23 +304,12 @@ def fit_subject(subject: Subject, clock: StageClock) -> Fit:
     return fitted
 
 
-def require_shown(subject: Subject, fitted: Fit) -> None:
-    """Raises FitNeedsSupport where something unseen carries the body in a fit, and the problem
-    refuses that: what the analysis told by itself it refused before."""
-    if subject.problem.unseen is not Unseen.REFUSE:
-        return
-    carried = tuple(unseen_support(fitted, fitted.motion))
-    if carried:
-        spans = ((round(each.first_frame), round(each.last_frame)) for each in carried)
-        raise FitNeedsSupport(tuple(spans))
-
-
 def adapt_fit(subject: Subject, fitted: Fit, clock: StageClock) -> AdaptationResult:
-    """Adapts the subject's fit to its problem. Raises what `adapt`, `on_fit` and `require_shown`
+    """Adapts the subject's fit to its problem. Raises what `adapt`, `on_fit` and `refuse_unseen`
     do, and NotComputable."""
     if not fitted.solved:
         return AdaptationResult(subject, unadapted(fitted), no_fit(subject, fitted))
-    require_shown(subject, fitted)
+    refuse_unseen(subject.problem, fitted)
     subject = on_fit(subject, fitted)
     with clock.stage(ADAPTING), computable():
         adaptation = adapt(fitted, subject.problem, progress=clock.step)

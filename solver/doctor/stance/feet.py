@@ -13,7 +13,8 @@ from ...data.contacts import ContactPoint, PointKind
 from ..falls import Spans
 from ..finding import Finding, FindingKind
 from ..local_poses import runs
-from .footing import DRIFT, FLOOR_OFF, HONEST, LOW, STANDING_SPEED_UP
+from .flat_feet import STANDING_SPEED_UP
+from .footing import DRIFT, FLOOR_OFF, HONEST, LOW
 
 SHORTEST = 0.1  # s; what is over sooner is a step's own unrest
 LEAST_SLID = 0.02  # m from its place; soles that roll do less

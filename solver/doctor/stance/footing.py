@@ -20,13 +20,12 @@ from ..figure import Figure
 from ..finding import Finding, FindingKind
 from ..local_poses import runs
 from ..repairs import Repairs
-from .flat_feet import FLAT_SPEED, FlatSamples, agreed
+from .flat_feet import FLAT_SPEED, STANDING_SPEED_UP, FlatSamples, agreed
 from .trembling_feet import drift_of_stances
 
 FLOOR_OFF = 0.03  # m, from the world's 0
 TOP_OFF = 0.05  # m, likewise, of a box: how thick soles are is told by a floor at 0 alone
 LOW = 0.03  # m above the floor: a foot that stands
-STANDING_SPEED_UP = 0.15  # m/s, up or down, of a foot that stands
 DRIFT = 0.12  # m/s; feet that roll over in runs leave 0.1
 FLAT_FAST = 0.8 * FLAT_SPEED  # m/s, of which feet that stand flat no longer tell
 FLAT_DRIFT = 0.04  # m/s, of feet that stand flat; honest ones leave 0.014

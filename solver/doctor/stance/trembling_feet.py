@@ -14,13 +14,12 @@ from ...data.recording import Recording
 from ...skeleton.parts import SIDES
 from ..figure import Figure
 from ..local_poses import runs
-from .flat_feet import FLAT, FLAT_SPEED, agreed, foot_ends
+from .flat_feet import FLAT, FLAT_SPEED, STANDING_SPEED_UP, agreed, foot_ends
 
 WINDOW = 0.2  # s, of the lines that tell which feet stand; a stance's own is as long as itself
 # Noise of 3 mm and 1°, as one camera has it, leaves this much of these lines' speeds.
 TREMOR = 0.1  # m/s
 LIFTED = 0.05  # m above the other foot: a foot that is lifted, and no noise
-STANDING_SPEED_UP = 0.15  # m/s, up or down, of a foot that stands
 LEAST_STANCE, FEWEST = 0.25, 6  # s; and frames, so that a cubic leaves something
 LEAST_STANDING, LEAST_SHARE = 0.3, 0.1  # s in all, and of a clip
 ROLLING = 0.015  # m, by which honest feet go in a stance; twice that is the most
