@@ -16,6 +16,7 @@ from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
 from ...solver.data.scene import SupportBox
 from ...solver.worker.protocol import Adapted
+from ..status_bar import StatusBar
 from ..words.failure_text import Failure
 from .solving import SolveState, Solving
 
@@ -60,7 +61,7 @@ class Session:
     motion that it found; the armature (its number) whose body something unseen carries, and boxes
     that would; of which armature, recording and bodies the controls were tried last, and pose
     them; what the last drag was about, or Analyze has prepared the next one for; frames a second
-    and metres per unit of the scene that was seen last."""
+    and metres per unit of the scene that was seen last; what the status bar says."""
 
     solving: Solving | None = None
     failure: Failure | None = None
@@ -70,6 +71,7 @@ class Session:
     dragged: Asked | None = None
     units: tuple[float, float] | None = None
     running: list[Running] = field(default_factory=list)
+    status_bar: StatusBar = field(default_factory=StatusBar)
 
     def best_of(self, armature: bpy.types.Object | None) -> tuple[Asked, Adapted] | None:
         """The best motion that a failed solve of an armature found."""

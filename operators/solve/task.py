@@ -112,8 +112,7 @@ class TaskOperator(ReadyOperator, FaultyOperator):
         self._task = kept_in_scene(context, self.task(context))
         manager = present(context.window_manager)
         self._timer = manager.event_timer_add(LOOK_EVERY, window=context.window)
-        self._workspace = present(context.workspace)
-        self._shown = ""
+        self._window, self._shown = context.window, ""
         session().running.append(self)
         self._show()
         manager.modal_handler_add(self)
@@ -148,6 +147,7 @@ class TaskOperator(ReadyOperator, FaultyOperator):
                     self._solving.did(job)
                 elif job is not None and not self._heard(job):
                     break
+            self._show()
             goes_on = True
         except StopIteration as end:
             self._finish(end.value)
@@ -163,7 +163,6 @@ class TaskOperator(ReadyOperator, FaultyOperator):
         finally:
             if not goes_on:  # also after a mistake of ours, or every button stayed grey
                 self.leave()
-        self._show()
         return {"RUNNING_MODAL"}
 
     def _ended(self) -> OperatorResult:
@@ -178,32 +177,51 @@ class TaskOperator(ReadyOperator, FaultyOperator):
         return job.answer is not None
 
     def cancel(self, _context: bpy.types.Context) -> None:
-        """Blender calls this when it opens another file or quits meanwhile."""
-        self.leave()
+        """Blender calls this when it opens another file, closes the window or quits meanwhile.
+
+        While it closes a window no context may be overridden, or it ends with a segmentation fault
+        (4.3); what the task has to put back then waits.
+        """
+        windows = list(present(bpy.context.window_manager).windows)
+        self._leave(window_closes=self._window not in windows)
 
     def leave(self) -> None:
         """Nothing of the work remains; a solve under way is dropped."""
+        self._leave(window_closes=False)
+
+    def _leave(self, *, window_closes: bool) -> None:
         running = session().running
         if self not in running:
             return
         running.remove(self)
         session().solving = None
         shared().drop()
-        self._task.close()
+        if window_closes:
+            bpy.app.timers.register(self._task.close, first_interval=0.0)
+        else:
+            self._task.close()
         present(bpy.context.window_manager).event_timer_remove(self._timer)
-        self._workspace.status_text_set(None)
         _redraw()
-        # What is drawn now still is what was before: buttons change their kind a redraw later, and
-        # what was found shows in the viewport.
-        bpy.app.timers.register(redraw_viewports, first_interval=LOOK_AGAIN)
+        bpy.app.timers.register(_settle, first_interval=LOOK_AGAIN)
 
     def _show(self) -> None:
         """Only what is new: drawing the sidebar again costs more than a look."""
         text = self._solving.text
         if text != self._shown:
             self._shown = text
-            self._workspace.status_text_set(STATUS.format(text))
+            session().status_bar.say(STATUS.format(text))
             _redraw()
+
+
+def _settle() -> None:
+    """After work has ended, also by its window being closed, in which nothing may be said then.
+
+    What was drawn as it ended is what was before: buttons change their kind a redraw later, and
+    what was found shows in the viewport.
+    """
+    if not session().running:
+        session().status_bar.clear()
+    redraw_viewports()
 
 
 def take_best() -> bool:

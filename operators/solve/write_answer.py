@@ -338,7 +338,9 @@ def _unchanged(asked: Asked) -> Incremental[bpy.types.Object]:
     before, rate = asked.recording.rate, frames_per_second(current_scene())
     if not isclose(before, rate, rel_tol=SAME_RATE):
         raise RateChanged(before, rate, while_solving=True)
-    armature = next((o for o in bpy.data.objects if o.session_uid == asked.uid), None)
+    # What was deleted is in the file until that is saved, but in no scene.
+    there = (each for each in bpy.data.objects if each.users_scene)
+    armature = next((each for each in there if each.session_uid == asked.uid), None)
     if armature is not None and armature.mode != "EDIT" and recorded_action(armature) is not None:
         frames = asked.recording.frames
         try:

@@ -24,6 +24,7 @@ from ..driving.actions import (
     worker_pid,
 )
 from ..driving.driver import Actions, Driver, Scenario, Until
+from ..driving.screen import present, window_manager
 
 
 def begin(driver: Driver, kilograms: float) -> Actions:
@@ -34,6 +35,17 @@ def begin(driver: Driver, kilograms: float) -> Actions:
     busy = extension_module("bridge.worker_client").shared
     yield Until("a solve under way", lambda: solve_stage() == "fit" and busy().busy, 60)
     yield 0.5
+
+
+def begin_in(window: bpy.types.Window, seconds: float) -> Actions:
+    """Adapt in the viewport of a window, in which the sidebar may be another's, for some seconds
+    of the worker's."""
+    area = next(each for each in window.screen.areas if each.type == "VIEW_3D")
+    region = next(each for each in area.regions if each.type == "WINDOW")
+    with bpy.context.temp_override(window=window, area=area, region=region):
+        bpy.ops.hangtime.adapt("INVOKE_DEFAULT")  # type: ignore[attr-defined]  # our own
+    yield Until("a solve under way", lambda: solve_stage() == "fit", 60)
+    yield seconds
 
 
 def escapes(driver: Driver) -> Actions:
@@ -90,6 +102,60 @@ def survives_worker(driver: Driver) -> Actions:
     assert worker_pid() not in (None, pid), "there is no new worker"
 
 
+def outlives_workspace(driver: Driver) -> Actions:
+    """The solve's tab is left, where what the status bar said must not stay, and then another is
+    deleted meanwhile."""
+    window = driver.screen.window
+    home = window.workspace
+    yield from begin(driver, 74.0)
+    window.workspace = bpy.data.workspaces["Animation"]
+    yield Until("the end of the solve", idle, 90)
+    window.workspace = home
+    yield 1.0
+    yield from driver.picture("home_again")
+    with bpy.context.temp_override(window=window):
+        bpy.ops.workspace.duplicate()
+    yield 0.5
+    kept = shown_action()
+    settings().mass = 74.5
+    yield from begin_in(window, 0.5)
+    with bpy.context.temp_override(window=window):
+        bpy.ops.workspace.delete()
+    yield Until("the end of the solve", idle, 90)
+    yield 0.5
+    assert shown_action() != kept, "nothing was adapted"
+
+
+def closes_its_window(driver: Driver) -> Actions:
+    """A solve ends with the window in which it was started, and leaves nothing.
+
+    A key closes it, as none does by itself: by Python Blender would end with it.
+    """
+    kept = shown_action(), len(bpy.data.actions)
+    user = present(window_manager().keyconfigs.user)
+    keys = user.keymaps["Window"].keymap_items
+    closes = keys.new("wm.window_close", "F10", "PRESS")
+    with bpy.context.temp_override(window=driver.screen.window):
+        bpy.ops.wm.window_new_main()
+    yield 1.5
+    other = window_manager().windows[-1]
+    settings().mass = 75.0
+    yield from begin_in(other, 0.5)
+    height = driver.screen.window.height
+    yield driver.input.move((other.x + other.width / 2, height - other.y - other.height / 2))
+    yield 0.5
+    yield driver.input.key("F10")
+    yield Until("the window's end", lambda: len(window_manager().windows) == 1, 5)
+    keys.remove(closes)
+    yield Until("idleness after the window's end", idle, 5)
+    yield 1.0
+    assert (shown_action(), len(bpy.data.actions)) == kept, "what was dropped left an action"
+    yield from press(driver, "hangtime.adapt")
+    yield Until("work", lambda: not idle())
+    yield Until("the end of the solve", idle, 90)
+    assert shown_action() != kept[0], "nothing was adapted afterwards"
+
+
 def disabled(driver: Driver) -> Actions:
     """The extension goes while a solve is under way, and comes again, three times.
 
@@ -137,6 +203,8 @@ SCENARIOS = (
     Scenario("escapes", escapes, ("adapts",)),
     Scenario("stays_usable", stays_usable, ("adapts",), 120),
     Scenario("survives_worker", survives_worker, ("adapts",), 120),
+    Scenario("outlives_workspace", outlives_workspace, ("adapts",), 240),
+    Scenario("closes_its_window", closes_its_window, ("adapts",), 180),
 )
 LAST = (Scenario("disabled", disabled, ("adapts",), 120),)
 QUITS = (Scenario("quits", quits, ("adapts",), 90),)

@@ -87,7 +87,7 @@ def test_a_contact_that_ends_before_it_begins_is_named(run: bpy.types.Object) ->
     assert problem_of(settings, read_recorded(run, None, None)).contacts
 
 
-@pytest.mark.parametrize("change", ["no keys", "uneven scale", "frame rate"])
+@pytest.mark.parametrize("change", ["no keys", "uneven scale", "frame rate", "deleted"])
 def test_a_change_meanwhile_is_said_to_have_cost_the_result(
     run: bpy.types.Object, change: str
 ) -> None:
@@ -99,6 +99,9 @@ def test_a_change_meanwhile_is_said_to_have_cost_the_result(
         run.animation_data.action = bpy.data.actions.new("Other")
     elif change == "uneven scale":
         run.scale = (1.0, 1.0, 2.0)
+    elif change == "deleted":  # which keeps it in the file until that is saved
+        for collection in run.users_collection:
+            collection.objects.unlink(run)
     else:
         bpy.context.scene.render.fps = 24
     session().solving = replace(Solving(), state=SolveState.SOLVING)
