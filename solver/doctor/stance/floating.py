@@ -21,7 +21,7 @@ from .flat_feet import flat_feet
 # Heights of feet that stand differ, from the tenth lowest to the tenth highest of a hundred: those
 # of honest feet by 1.5 cm; and how fast they move, where those on stairs stand still.
 RISES, RISES_BY = 0.03, 0.03  # m, and m/s
-STAIRS = 0.4  # m; of heights that differ by more the floor is not one
+STEP = 0.15  # m; what the ground's way leaves of such differences is a stair's, or a box's
 OUTER = 10.0, 90.0  # %
 SLIDES = 0.06  # m along the floor, of a foot in one stance; honest ones move by 2 to 4 cm
 SLIDE_SHARE = 1.0 / 3.0  # of the time in which feet stand; one may be drawn along the floor
@@ -35,6 +35,7 @@ KNOT = 0.25  # s; what floats takes a second or more
 STIFF = 0.1**4  # s⁴, of the velocities' second derivative, against what they miss the feet's by
 HEIGHT_WEIGHT = (0.02 / 0.01) ** 2  # 1/s², of heights, likewise
 PLACE_WEIGHT = (0.02 / 0.1) ** 2  # 1/s², of places
+APART_WEIGHT = (0.02 / 0.05) ** 2  # 1/s², likewise where a box's height hides how far it floated
 VELOCITY_WEIGHT = (0.02 / 0.15) ** 2  # of velocities where no foot tells any, likewise
 
 
@@ -52,14 +53,15 @@ def find_floating(recording: Recording, figure: Figure) -> Finding | None:
 
 def held_to_the_ground(recording: Recording, figure: Figure) -> Recording:
     """With the whole body moved, slowly, so that feet that stand flat and rise are on one floor, at
-    the middle of their heights, and those that slide stay where they are; others as they are."""
+    the middle of their heights, or on boxes each stay level, and those that slide stay where they
+    are; others as they are."""
     if len(recording.frames) < FEWEST:
         return recording
     ground = _Ground.of(recording, figure)
     moves = np.array([ground.slides() > 0.0, ground.slides() > 0.0, ground.rises() > 0.0])
     if not moves.any():
         return recording
-    way = np.where(moves, ground.way(recording.times - recording.times[0]), 0.0)
+    way = np.where(moves, ground.way, 0.0)
     return replace(recording, heads=recording.heads - way[:, None])
 
 
@@ -89,15 +91,14 @@ class _Ground:
         return _Ground(velocity, height, stands.any(axis=0), rate)
 
     def rises(self) -> float:
-        """How far, m, the heights of feet that stand differ that are of one floor; 0 where they do
-        not, or where these feet stand still."""
+        """How far, m, the ground goes up and down below feet that stand; 0 where it does not, or
+        where these feet stand still."""
         seconds = float(self.tells.sum()) / self.rate
         if seconds < LEAST_STANDING:
             return 0.0
-        low, high = np.percentile(self.height[self.tells], OUTER)
+        far = self._spread(self.height if self.is_one_floor else self.way[:, 2])
         climbed = sum(float(np.ptp(way[:, 2])) for way in self._stances)
-        floats = RISES < high - low < STAIRS and climbed > RISES_BY * seconds
-        return float(high - low) if floats else 0.0
+        return far if far > RISES and climbed > RISES_BY * seconds else 0.0
 
     def slides(self) -> float:
         """How far, m, feet slide in a stance at most; 0 where they do so for less than a third of
@@ -114,20 +115,38 @@ class _Ground:
         parts = (self.velocity[first : last + 1] for first, last in runs(self.tells))
         return [np.cumsum(part, axis=0) / self.rate for part in parts]
 
-    def way(self, times: FloatArray) -> FloatArray:
-        """(T, 3) m, at times (T,) s from 0 on, the way with these velocities and heights: least
-        squares of a spline with its third derivative (a P-spline, Eilers and Marx 1996)."""
+    @cached_property
+    def is_one_floor(self) -> bool:
+        """Whether the ground's way alone is why heights differ, and no box on which some stand."""
+        return self._spread(self.height - self._way(PLACE_WEIGHT)[:, 2]) < STEP
+
+    @cached_property
+    def way(self) -> FloatArray:
+        """(T, 3) m, the way with these velocities, and on one floor with these heights."""
+        along = self._way(PLACE_WEIGHT)[:, :2]
+        if not self.is_one_floor:
+            return np.hstack([along, self._way(APART_WEIGHT)[:, 2:]])
+        floor = np.median(self.height[self.tells])
+        above = np.repeat((self.height - floor)[:, None], 3, axis=1)
+        level = SplineTerm(0, HEIGHT_WEIGHT * self.tells, above)
+        return np.hstack([along, self._way(PLACE_WEIGHT, level)[:, 2:]])
+
+    def _spread(self, heights: FloatArray) -> float:
+        """M, by which heights (T,), m, differ where feet stand."""
+        low, high = np.percentile(heights[self.tells], OUTER)
+        return float(high - low)
+
+    def _way(self, place_weight: float, *more: SplineTerm) -> FloatArray:
+        """(T, 3) m: least squares of a spline with its third derivative (a P-spline, Eilers and
+        Marx 1996), by the velocities and more. place_weight: 1/s²."""
+        times = np.arange(len(self.tells)) / self.rate
         breaks = np.linspace(0.0, times[-1], max(round(times[-1] / KNOT), 1) + 1)
         basis = SplineBasis(breaks, np.zeros(len(breaks), bool))
         one, nothing = np.ones(len(times)), 0.0 * self.velocity
         terms = [
-            SplineTerm(0, PLACE_WEIGHT * one, nothing),
+            SplineTerm(0, place_weight * one, nothing),
             SplineTerm(1, np.where(self.tells, one, VELOCITY_WEIGHT), self.velocity),
             SplineTerm(3, STIFF * one, nothing),
+            *more,
         ]
-        floor = np.median(self.height[self.tells])
-        above = np.repeat((self.height - floor)[:, None], 3, axis=1)
-        level = SplineTerm(0, HEIGHT_WEIGHT * self.tells, above)
-        along = basis.least_squares(times, terms)[:, :2]
-        upwards = basis.least_squares(times, [*terms, level])[:, 2:]
-        return basis.combine(np.hstack([along, upwards]), times)
+        return basis.combine(basis.least_squares(times, terms), times)

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hangtime.devtools.doctor.damages import at_rate, floating, swaying
+from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.problem import Mend, MotionProblem
 from hangtime.solver.data.recording import Recording
@@ -59,6 +60,25 @@ def test_honest_feet_do_not_float_and_are_left_as_they_are(name: str, rate: floa
     clip = at_rate(load_recording(name), rate)
     assert find_floating(clip, figure_of(clip)) is None
     np.testing.assert_array_equal(repaired(clip, HELD).heads, clip.heads)
+
+
+def off_a_box(height: float) -> Recording:
+    """The jump from a box: what is before its flight's middle is higher, smoothly."""
+    middle = jump().times[int(np.argmax(jump().heads[:, figure().bones[0], 2]))]
+    later = np.clip((jump().times - middle) / 0.3 + 0.5, 0.0, 1.0)
+    higher = height * (1.0 - later**2 * (3.0 - 2.0 * later))
+    return replace(jump(), heads=jump().heads + higher[:, None, None] * [0.0, 0.0, 1.0])
+
+
+def test_a_body_that_floats_beside_a_box_keeps_the_box() -> None:
+    clean = off_a_box(0.3)
+    assert find_floating(clean, figure()) is None
+    for metres, seconds in ((0.05, 2.0), (0.1, 3.0)):
+        damaged = floating(metres, seconds).of(clean).recording
+        found = find_floating(damaged, figure())
+        assert found is not None
+        assert found.amount < 200.0 * metres
+        assert apart(repaired(damaged, HELD), clean) < 0.8 * apart(damaged, clean)
 
 
 def test_who_climbs_does_not_float() -> None:
