@@ -108,17 +108,23 @@ def lain(up: UpAxis) -> Damage:
     return Damage(f"{up.value} up", FindingKind.UP_AXIS, do)
 
 
-def begun_at_rest(frames: int) -> Damage:
-    """The rest pose on the first frames."""
+def begun_at_rest(frames: int, arms: float = 0.0) -> Damage:
+    """The rest pose on the first frames. arms: °, by which both are turned in it: as in a T pose
+    where the rest hangs them."""
 
     def do(recording: Recording, _: np.random.Generator) -> Damaged:
         rotations, heads = recording.rotations.copy(), recording.heads.copy()
         rotations[:frames] = np.stack([bone.rotation for bone in recording.bones])
         heads[:frames] = np.stack([bone.head for bone in recording.bones])
         damaged = replace(recording, rotations=rotations, heads=heads)
-        return Damaged(damaged, recording.part(slice(frames, None)))
+        local, bones = LocalPoses.of(damaged), figure_of(recording).of(Part.UPPER_ARM)
+        for bone, degrees in zip(bones, (arms, -arms), strict=True):
+            turn = axis_rotation(0, np.radians(degrees))
+            local.rotations[:frames, bone] = local.rotations[:frames, bone] @ turn
+        return Damaged(local.posed(damaged), recording.part(slice(frames, None)))
 
-    return Damage(f"rest pose, {frames} frames", FindingKind.BIND_POSE, do)
+    name = f"rest pose{', arms turned' if arms else ''}, {frames} frames"
+    return Damage(name, FindingKind.BIND_POSE, do)
 
 
 def ended_at_rest(frames: int) -> Damage:
@@ -494,6 +500,7 @@ DAMAGES = (
     sized(0.01, "metres as centimetres"),
     *map(lain, (UpAxis.Y, UpAxis.X)),
     *map(begun_at_rest, (1, 5)),
+    begun_at_rest(1, 80.0),
     ended_at_rest(5),
     *map(spiked, (20.0, 45.0, 120.0)),
     *map(burst, (2, 5)),

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..data.recording import Recording
 from ..numerics.rotations import angles_between
 
@@ -33,16 +33,38 @@ def bind_frames(recording: Recording) -> int:
     resting = (away < AT_REST).mean(axis=1)
     leaning = (resting >= MOST) & (away.max(axis=1) < NEAR)
     for held, least in ((resting >= SHARE, 0.0), (leaning, PART)):
-        count = int(np.argmin(held)) if not held.all() else 0
-        if count and (angles_between(local[count - 1], local[count]) > JUMP).mean() > least:
+        count = _beginning(held)
+        if count and _jumps(local, count).mean() > least:
             return count
-    return 0
+    return _spread_frames(away, local)
 
 
 def last_bind_frames(recording: Recording) -> int:
     """How many frames at the end hold the rest pose, to which the motion jumps: seen backwards they
     are the first."""
     return bind_frames(replace(recording, rotations=recording.rotations[::-1]))
+
+
+def _spread_frames(away: FloatArray, local: FloatArray) -> int:
+    """Likewise of a T pose where the rest hangs the arms: a few joints are from their rest, each as
+    far as another one, and jump together. away: (T, J) rad. local: (T, J, 3, 3)."""
+    turned = away[0] >= AT_REST
+    far = np.sort(away[0, turned])
+    paired = len(far) % 2 == 0 and bool((np.diff(far)[::2] < AT_REST).all())
+    if not turned.any() or not paired or turned.mean() > 1.0 - MOST:
+        return 0
+    count = _beginning((angles_between(local[:1], local) < AT_REST).all(axis=1))
+    return count if count and bool(_jumps(local, count)[turned].all()) else 0
+
+
+def _beginning(held: BoolArray) -> int:
+    """How many frames (T,) are so before the first that is not; 0 where all are."""
+    return 0 if held.all() else int(np.argmin(held))
+
+
+def _jumps(local: FloatArray, frame: int) -> BoolArray:
+    """(J,) which joints (T, J, 3, 3) jump to a frame."""
+    return np.asarray(angles_between(local[frame - 1], local[frame]) > JUMP)
 
 
 def _between(first: FloatArray, second: FloatArray) -> FloatArray:

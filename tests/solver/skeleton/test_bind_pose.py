@@ -68,6 +68,29 @@ def test_a_bind_pose_with_legs_apart_is_found() -> None:
     assert bind_frames(with_legs_apart(begun_at_rest(clip(), 1))) == 1
 
 
+def with_arms_turned(recording: Recording, frames: int) -> Recording:
+    """The first frames with 80° at both upper arms: a T pose where the rest hangs them, a bind pose
+    either way."""
+    local = LocalPoses.of(recording)
+    for name, degrees in (("LeftArm", -80), ("RightArm", 80)):
+        bone = recording.index(name)
+        turn = rotation_matrix(np.radians([degrees, 0.0, 0.0]))
+        local.rotations[:frames, bone] = local.rotations[:frames, bone] @ turn
+    return local.posed(recording)
+
+
+def test_a_bind_pose_with_arms_elsewhere_than_at_rest_is_found_and_no_frame_more() -> None:
+    for frames in (1, 4):
+        assert bind_frames(with_arms_turned(begun_at_rest(clip(), frames), frames)) == frames
+
+
+def test_who_stands_at_rest_with_arms_raised_and_lowers_one_of_them_is_let_be() -> None:
+    stood = with_arms_turned(begun_at_rest(clip(), 20), 20)
+    rotations, arm = stood.rotations.copy(), stood.index("LeftArm")
+    rotations[10:20, arm] = rotations[10:20, arm] @ rotation_matrix(np.radians([40.0, 0.0, 0.0]))
+    assert bind_frames(replace(stood, rotations=rotations)) == 0
+
+
 def test_who_stands_with_legs_apart_and_raises_an_arm_at_once_is_let_be() -> None:
     """All but the arm move on smoothly: the rest skeleton is the second frame's own."""
     recording = clip()
