@@ -96,16 +96,17 @@ def sized(factor: float, name: str) -> Damage:
     return Damage(name, FindingKind.SIZE, do)
 
 
-def lain(up: UpAxis) -> Damage:
-    """Another axis than Z up."""
+def lain(up: UpAxis, *, rest: bool = True) -> Damage:
+    """Another axis than Z up. rest: at rest too, not in the motion alone, as of a turned object."""
 
     def do(recording: Recording, _: np.random.Generator) -> Damaged:
         damaged = recording
         for _turn in range(3):  # the turn that mends it is the fourth
             damaged = turned(damaged, Repairs(up=up))
-        return Damaged(damaged, recording)
+        return Damaged(damaged if rest else replace(damaged, bones=recording.bones), recording)
 
-    return Damage(f"{up.value} up", FindingKind.UP_AXIS, do)
+    name = f"{up.value} up{'' if rest else ' in the motion alone'}"
+    return Damage(name, FindingKind.UP_AXIS, do)
 
 
 def begun_at_rest(frames: int, arms: float = 0.0) -> Damage:
@@ -499,6 +500,7 @@ DAMAGES = (
     sized(1 / 2.54, "inches as centimetres"),
     sized(0.01, "metres as centimetres"),
     *map(lain, (UpAxis.Y, UpAxis.X)),
+    lain(UpAxis.X, rest=False),
     *map(begun_at_rest, (1, 5)),
     begun_at_rest(1, 80.0),
     ended_at_rest(5),

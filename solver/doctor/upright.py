@@ -16,26 +16,51 @@ UPRIGHT = 0.8  # of the way from feet to head, along one axis
 # Of the hips' height above the feet at rest. Honest hips rise by 0.06 of it in a walk, as feet do
 # below them; whoever sits has them at half of it.
 LEVEL, STEPS, STANDS = 0.002, 0.05, 0.7
+# Feet carry who walks in 0.8 of the time, who runs or hops in 0.2 to 0.5; along another axis the
+# joint that is lowest goes with the body.
+CARRIED, ELSEWHERE = 0.1, 0.5
+GOES, KEEPS = 0.45, 0.3  # of the way from feet to head, a second: of the hips, and of what carries
+LEAST_GOING, WITHIN = 0.3, 0.05  # s, in all, and on each side of a frame
 
 _AXES = {axis: np.eye(3)["XYZ".index(axis.value[-1])] for axis in UpAxis}
 _SIGNS = {axis: -1.0 if axis.value.startswith("-") else 1.0 for axis in UpAxis}
 
 
 def find_up(recording: Recording, figure: Figure) -> Finding | None:
-    """A figure that stands along another axis than Z, at rest and in most of the clip.
+    """A figure that in most of the clip stands along another axis than Z, and at rest too, or by
+    what carries it: of a turned object the motion alone may lie.
 
-    Who lies or stands on the hands is upright at rest.
+    Who lies or stands on the hands is upright at rest, and goes by what is lowest.
     """
     feet, heads = figure.of(Part.FOOT), figure.of(Part.HEAD, Part.NECK)
     if not heads:
         return None
     moving = recording.heads[:, heads[0]] - recording.heads[:, feet].mean(axis=1)
     rest = [recording.bones[bone].head for bone in (heads[0], *feet)]
-    axes = {_along(np.median(moving, axis=0)), _along(rest[0] - np.mean(rest[1:], axis=0))}
-    up = axes.pop()
-    if axes or up in (None, UpAxis.Z):
+    way = np.median(moving, axis=0)
+    up = _along(way)
+    if up in (None, UpAxis.Z):
         return None
+    if _along(rest[0] - np.mean(rest[1:], axis=0)) is not up:
+        length = float(np.linalg.norm(way))
+        along, lowest = (_carried(recording, figure, axis, length) for axis in (up, UpAxis.Z))
+        if along < CARRIED or lowest > ELSEWHERE * along:
+            return None
     return Finding(FindingKind.UP_AXIS, 90.0, "°", remedy=Repairs(up=up))
+
+
+def _carried(recording: Recording, figure: Figure, up: UpAxis, length: float) -> float:
+    """Share of the time in which the hips go, in which the joint that is lowest along an axis keeps
+    its place: it carries the body. 0 where they hardly go. length: m, from feet to head."""
+    reach = max(1, round(WITHIN * recording.rate))
+    joints = recording.heads[:, figure.bones]
+    ways = np.linalg.norm(joints[2 * reach :] - joints[: -2 * reach], axis=2)
+    speeds = ways * recording.rate / (2 * reach * length)
+    lowest = np.argmin(_SIGNS[up] * joints[reach:-reach] @ _AXES[up], axis=1)
+    goes = speeds[:, 0] > GOES
+    if goes.sum() < LEAST_GOING * recording.rate:
+        return 0.0
+    return float((speeds[np.arange(len(lowest)), lowest] < KEEPS)[goes].mean())
 
 
 def find_level_hips(recording: Recording, figure: Figure) -> Finding | None:

@@ -23,6 +23,7 @@ from hangtime.devtools.doctor.damages import (
     stretched,
 )
 from hangtime.devtools.doctor.measure import apart
+from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.faults import UnseenSupport
 from hangtime.solver.data.problem import Mend, MotionProblem
 from hangtime.solver.doctor.examination.diagnose import diagnose
@@ -31,6 +32,7 @@ from hangtime.solver.doctor.finding import FindingKind
 from hangtime.solver.doctor.frames.spikes import find_spikes
 from hangtime.solver.doctor.repairs import Repairs, UpAxis
 from hangtime.solver.doctor.upright import find_up
+from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.solver.worker.pipeline import measure
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.doctored import figure, jump, of_poses, sparse
@@ -189,3 +191,30 @@ def test_a_figure_that_lies_is_set_upright(up: UpAxis) -> None:
     (unseen,) = measure(damaged.recording, MotionProblem()).analysis.unseen
     assert isinstance(unseen, UnseenSupport)
     assert (unseen.lying, unseen.boxes) == (True, ())  # no box is offered
+
+
+@pytest.mark.parametrize("up", [UpAxis.Y, UpAxis.X, UpAxis.MINUS_Y])
+def test_a_motion_that_lies_though_its_rest_stands_is_set_upright(up: UpAxis) -> None:
+    damaged = lain(up, rest=False).of(jump())
+    (found,) = diagnose(damaged.recording).findings
+    assert (found.kind, found.remedy) == (FindingKind.UP_AXIS, Repairs(up=up))
+    assert apart(repaired(damaged.recording, Repairs(up=up)), damaged.original) < 1e-9
+
+
+def test_who_is_upside_down_in_the_motion_alone_is_set_upright() -> None:
+    over = np.diag([1.0, -1.0, -1.0])
+    damaged = replace(jump(), heads=jump().heads @ over, rotations=over @ jump().rotations)
+    found = find_up(damaged, figure())
+    assert found is not None
+    assert found.remedy == Repairs(up=UpAxis.MINUS_Z)
+
+
+def test_who_does_push_ups_lies_in_truth() -> None:
+    """On the toes, which are lowest, and along the figure the last, all the while."""
+    times, still = jump().times, jump().heads[0]
+    toes = still[figure().of(Part.TOE)].mean(axis=0)
+    slopes = np.radians(80.0 + 10.0 * np.sin(2.0 * np.pi * times))
+    turns = axis_rotation(0, slopes)
+    heads = toes + np.einsum("tij,bj->tbi", turns, still - toes)
+    lying = replace(jump(), heads=heads, rotations=turns[:, None] @ jump().rotations[:1])
+    assert find_up(lying, figure()) is None
