@@ -172,6 +172,22 @@ def burst(frames: int) -> Damage:
     return Damage(f"spike of 50°, {frames} frames", FindingKind.SPIKE, do)
 
 
+def leapt(metres: float, frames: int) -> Damage:
+    """The whole body ahead on its way for some frames, at the rate of video."""
+
+    def do(recording: Recording, rng: np.random.Generator) -> Damaged:
+        original = at_rate(recording, VIDEO_RATE)
+        quarter = len(original.frames) // 4
+        first = int(rng.integers(quarter, 3 * quarter - frames))
+        root, heads = figure_of(original).bones[0], original.heads.copy()
+        way = (heads[first + frames, root] - heads[first - 1, root]) * [1.0, 1.0, 0.0]
+        heads[first : first + frames] += metres * way / np.linalg.norm(way)
+        return Damaged(replace(original, heads=heads), original)
+
+    name = f"{VIDEO_RATE:g} Hz, {100 * metres:g} cm ahead, {frames} frames"
+    return Damage(name, FindingKind.SPIKE, do)
+
+
 def joined(metres: float) -> Damage:
     """The whole body elsewhere from some frame on, as where two takes were joined."""
 
@@ -506,6 +522,7 @@ DAMAGES = (
     ended_at_rest(5),
     *map(spiked, (20.0, 45.0, 120.0)),
     *map(burst, (2, 5)),
+    leapt(0.13, 2),
     *map(joined, (0.1, 0.4)),
     ragged(8),
     *(exchanged(frames, limbs) for limbs in (Mend.LEGS, Mend.ARMS) for frames in (5, 15, 30)),

@@ -13,7 +13,7 @@ from ...numerics.rotations import angles_between
 from ..figure import Figure
 from ..local_poses import LocalPoses
 from ..slack import slack
-from .steps import around, moved_steps, turned_steps
+from .steps import around, leaping_steps, turned_steps
 
 # The steps to the first frame and from the last one, beyond those beside them; honest ones are up
 # to 28° and 1.7 cm at 30 Hz, and do not come back.
@@ -51,7 +51,7 @@ def bursts(recording: Recording, local: LocalPoses, figure: Figure) -> BoolArray
         left = np.linalg.norm(seen.sum(axis=0))
         return bool(left < RETURNED * np.linalg.norm(seen[[0, -1]], axis=1).min())
 
-    for first, last in _bursts(moved_steps(local, root), PLACE * slack(recording.rate), moved_back):
+    for first, last in _bursts(leaping_steps(steps), PLACE * slack(recording.rate), moved_back):
         unsound[first : last + 1, root] = True
     return unsound
 

@@ -24,16 +24,26 @@ def moved_steps(local: LocalPoses, bone: int) -> FloatArray:
     return _uneven(np.diff(local.heads[:, bone], axis=0))
 
 
+def leaping_steps(steps: FloatArray) -> FloatArray:
+    """(S,) m, by which steps (S, 3) differ from the mean of those beside them, also where one of
+    those is longer: of who runs the way back from where a frame leapt to is short."""
+    return np.asarray(np.linalg.norm(steps - np.mean(_beside(steps), axis=0), axis=1))
+
+
 def _uneven(steps: FloatArray) -> FloatArray:
     """(S,) of vectors (S, 3)."""
+    own, most = (np.linalg.norm(each, axis=-1) for each in (steps, np.stack(_beside(steps))))
+    return np.where(own < most.max(axis=0), 0.0, leaping_steps(steps))
+
+
+def _beside(steps: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(S, 3) before each of some steps and after it; at the ends both are the one there is."""
     before, after = (
         np.concatenate([steps[:1], steps[:-1]]),
         np.concatenate([steps[1:], steps[-1:]]),
     )
     before[0], after[-1] = after[0], before[-1]
-    own, most = (np.linalg.norm(each, axis=-1) for each in (steps, np.stack([before, after])))
-    off = np.linalg.norm(steps - 0.5 * (before + after), axis=1)
-    return np.where(own < most.max(axis=0), 0.0, off)
+    return before, after
 
 
 def around(uneven: FloatArray, first: int, last: int) -> float:

@@ -16,6 +16,7 @@ from hangtime.devtools.doctor.damages import (
     held,
     joined,
     lain,
+    leapt,
     noisy,
     raised,
     slowed,
@@ -28,6 +29,7 @@ from hangtime.solver.data.faults import UnseenSupport
 from hangtime.solver.data.problem import Mend, MotionProblem
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.examination.repair import repaired
+from hangtime.solver.doctor.figure import figure_of
 from hangtime.solver.doctor.finding import FindingKind
 from hangtime.solver.doctor.frames.spikes import find_spikes
 from hangtime.solver.doctor.repairs import Repairs, UpAxis
@@ -179,6 +181,15 @@ def test_several_damages_are_mended_together() -> None:
     mended = repaired(damaged.recording, diagnosis.repairs)
     assert mended.rate == pytest.approx(jump().rate)
     assert apart(mended, jump()) < 0.015
+
+
+@pytest.mark.parametrize("damage", [leapt(0.13, 2), leapt(0.25, 3)])
+def test_frames_in_which_who_runs_is_further_on_the_way_are_spikes(damage: Damage) -> None:
+    damaged = damage.of(load_recording("run_1.bvh"))
+    found = find_spikes(damaged.recording, figure_of(damaged.recording))
+    assert found is not None
+    mended = repaired(damaged.recording, Repairs(mend=(Mend.SPIKES,)))
+    assert apart(mended, damaged.original) < 0.2 * apart(damaged.recording, damaged.original)
 
 
 @pytest.mark.parametrize("up", [UpAxis.Y, UpAxis.X])
