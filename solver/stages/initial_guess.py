@@ -1,6 +1,6 @@
 """Initial guess: the fit on the problem's own contacts, timeline and knots (thesis 6.2 to 6.4)."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -53,6 +53,7 @@ def resampled_fit(
         t.character, basis, points, contacts, t.moment, periodic=t.periodic, support=support
     )
     x = _resampled(reference, new, context.timeline.eased)
+    x = _taken_over(x, new, added)
     motion = Motion(new, x, np.zeros((len(contacts), 3)))
     return replace(motion, places=_current_places(motion, fit))
 
@@ -106,6 +107,24 @@ def _resampled(
             held = forces[:, -new.n_support :].reshape(len(forces), -1)
             x[layout.force_block(nodes[:, side]), new.support_columns] = held
     x[~new.active] = 0.0
+    return x
+
+
+def _taken_over(x: FloatArray, t: Transcription, added: Container[str]) -> FloatArray:
+    """The unknowns with added contacts that can carry a weight carrying what was unseen while they
+    hold, in equal shares: what is nearest to the fit, which does not know them, would leave them
+    next to nothing."""
+    able = [c for c in t.contacts if c.contact.name in added and c.bears_weight]
+    forces = [t.layout.force(c.point) for c in able]
+    if t.support is None or not forces:
+        return x
+    carries = np.array([t.active[:, force].any(axis=1) for force in forces])  # (n, K)
+    shares = carries / np.maximum(carries.sum(axis=0), 1)
+    unseen = x[:, t.support_columns].reshape(len(x), -1, 3).sum(axis=1)
+    x = x.copy()
+    for force, share in zip(forces, shares, strict=True):
+        x[:, force] += share[:, None] * unseen
+    x[carries.any(axis=0), t.support_columns] = 0.0
     return x
 
 

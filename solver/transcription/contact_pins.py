@@ -85,6 +85,12 @@ class PointContact:
     normal: FloatArray = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
     pyramid: bool = False
 
+    @property
+    def bears_weight(self) -> bool:
+        """Whether a weight can rest on it: the vertical is in its friction cone; any on a grip."""
+        x, y, z = self.normal
+        return self.friction is None or bool(np.hypot(x, y) <= self.friction * z)
+
     def retimed(self, warp: Callable[[FloatArray], FloatArray]) -> "PointContact":
         """The same contact at other instants. warp: new instants (T,) s of old ones."""
         start, end = warp(np.array([self.contact.start, self.contact.end])).tolist()

@@ -17,6 +17,7 @@ from hangtime.solver.data.problem import MotionProblem, Pin, Unseen
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.data.reports.report import Report
+from hangtime.solver.data.requests import PointRequest, Requests, When
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.traces import UNSEEN_SUPPORT
 from hangtime.solver.fitting.fit import Fit
@@ -156,6 +157,32 @@ def test_what_is_carried_so_is_adapted() -> None:
     made = adapted(0.1)
     assert made.fault is None
     assert made.adaptation.motion.places[-1, 2] == pytest.approx(0.1, abs=0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("normal", "least", "most"), [((0.0, 0.0, 1.0), 0.9, 1.0), ((1.0, 0.0, 0.0), 0.0, 0.1)]
+)
+def test_points_that_push_back_carry_what_was_unseen(
+    normal: tuple[float, float, float], least: float, most: float
+) -> None:
+    """Where they can: nobody stands on a wall. least, most: their share of the vertical force."""
+    (flight,) = subject().schedule.flights
+    first = float(subject().recording.frames[0])
+    when = When(frames=(first, first + flight.start * subject().recording.rate))
+    toes = tuple(
+        PointRequest(f"{side} toe on it", f"{side}ToeBase", when, environment=True, normal=normal)
+        for side in ("Left", "Right")
+    )
+    asked = subject().asked(MotionProblem(requests=Requests(points=toes)))
+    made = adapt_fit(asked, fitted(), StageClock())
+    assert made.fault is None
+    motion = made.adaptation.motion
+    t = motion.transcription
+    added = [c.point for c in t.contacts if "on it" in c.contact.name]
+    forces = motion.forces(np.linspace(0.02, flight.start - 0.06, 60))[..., 2].mean(axis=0)
+    unseen, carried = forces[-t.n_support :].sum(), forces[added].sum()
+    assert least < carried / (carried + unseen) < most
 
 
 def test_a_stance_on_what_is_not_there_has_no_contact_to_move() -> None:
