@@ -45,7 +45,8 @@ def continuation(
         if transcription.seam is not None:
             start = transcription.seam.closed(start, setup.metric)
         if step == 1:  # where nothing is gripped this changes nothing
-            start = reach_grips(Motion(transcription, start, places), setup.target_places).x
+            ranges = () if setup.human is None else setup.human.ranges
+            start = reach_grips(Motion(transcription, start, places), setup.target_places, ranges).x
         if step < steps:
             transcription = transcription.relaxed(start, 1.0 / (steps - step + 1))
         feasible = setup.feasible_set(transcription, places)
