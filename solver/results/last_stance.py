@@ -24,7 +24,7 @@ def last_stance_move(adaptation: Adaptation) -> StanceMove | None:
     if not moves:
         return None
     last = end_move(schedule, setup.fitted, after, moves[-1])
-    phase = next(p for p in schedule.phases if p.start == last.start and p.end == last.end)
+    phase = next(p for p in schedule.phases if p.start <= last.start < p.end)
     px, py, pz = last.pivots[-1].tolist()
     x, y, z = np.asarray(last.shifts[-1]).tolist()
     return StanceMove(phase.name, (px, py, pz), float(last.turns[-1]), (x, y, z))

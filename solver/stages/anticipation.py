@@ -76,7 +76,8 @@ def changed_jumps(
         for jump in _jumps(start, schedule)
         if not _overlaps(jump.take_off, jump.landing, kept)
         and any(
-            (before.end, after.start) == (jump.take_off, jump.landing)
+            before.end <= jump.take_off
+            and jump.landing <= after.start
             and np.linalg.norm(after.shift - before.shift) > MIN_MOVE
             for before, after in pairwise(moves)
         )

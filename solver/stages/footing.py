@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from ..analysis.landing import Footing
-from ..analysis.pinned_places import pinned_footing
+from ..analysis.pinned_places import chosen_contacts, phase_of, pinned_footing
 from ..arrays import FloatArray
 from ..data.constants import UP
-from ..data.contacts import ContactSchedule, Phase
+from ..data.contacts import ContactSchedule
 from ..data.faults import StandsBelow, StandsIn, TooSteep
 from ..data.problem import MotionProblem, Pin
 from ..data.scene import SceneObject
@@ -91,14 +91,11 @@ def _on_face(contact: PointContact, normal: FloatArray, pin: Pin) -> PointContac
     return replace(contact, normal=normal)
 
 
-def pin_turns(
-    problem: MotionProblem, named: Sequence[Phase], schedule: ContactSchedule
-) -> dict[str, float]:
-    """Turns of the result's ground phases by the pins, which name the recording's phases; rad."""
+def pin_turns(pins: Sequence[Pin], schedule: ContactSchedule) -> dict[str, float]:
+    """Turns of the contacts that pins move, by their names; rad. schedule: the fit's."""
     turns: dict[str, float] = {}
-    for pin in problem.pins:
-        was = next((phase for phase in named if phase.name == pin.phase), None)
-        for phase in schedule.phases:
-            if was is not None and phase.start < was.end and phase.end > was.start:
-                turns[phase.name] = turns.get(phase.name, 0.0) + pin.turn
+    for pin in pins:
+        for i in chosen_contacts(pin, phase_of(pin, schedule), schedule):
+            name = schedule.contacts[i].name
+            turns[name] = turns.get(name, 0.0) + pin.turn
     return turns

@@ -52,7 +52,7 @@ class Setup:
     start: the initial guess, whose transcription has the problem's constraints; its places are
     where its contacts are, on still ground. fitted: where they were in the
     fit; target: where they shall be, and the rides from there, which the transcription has.
-    metric: W at the start. turns: of the ground phases by the pins, rad. basis: (n_block, k), the
+    metric: W at the start. turns: of the contacts by the pins, rad. basis: (n_block, k), the
     changes of a block that a reduction allows, None all. requests: those set up here. recording: of
     the figure as it is asked for. space: the reduced coordinates, None where there are none.
     durations: where they come from. changes: of the solid shapes. scene: what is around. price: of
@@ -158,7 +158,7 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     if _weighs_torques(requests):
         metric = metric.copy()
         metric.lower += _torque_metric(fit, start, same=same).lower
-    turns = pin_turns(problem, context.phases, context.schedule)
+    turns = pin_turns(problem.pins, fit.schedule)
     reduction, space = requests.solution.reduction, None
     if reduction is not None:
         space = reduce(reduction, start.transcription.character, fit.performance.angles)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import FloatArray
-from ..data.contacts import ContactSchedule, PhaseKind
+from ..data.contacts import ContactSchedule, Interval, gaps
 from ..numerics.rotations import axis_rotation, planar_turn
 from ..numerics.splines import dense_instants, greville_abscissae
 from ..transcription.motion import Motion
@@ -144,33 +144,38 @@ def stance_moves(
     after: Standing,
     wanted: Mapping[str, float] | None = None,
 ) -> tuple[RigidMove, ...]:
-    """Least-squares rigid move (planar Kabsch) of each ground phase's contacts.
+    """Least-squares rigid move (planar Kabsch) of each stance's contacts.
 
     Grips and other contacts that were asked for move nothing: the arms reach for them (arm_ik.py).
-    wanted: turns by phase, rad. Places alone cannot tell a half turn left from one right, nor a
-    whole turn from none; without a wish a stance is turned as the one before it ended.
+    wanted: turns of contacts, by names, rad. Places alone cannot tell a half turn left from one
+    right, nor a whole turn from none; without a wish a stance is turned as the one before it ended.
     """
     moves: list[RigidMove] = []
     turned = 0.0
-    for phase in schedule.phases:
-        if phase.kind is not PhaseKind.GROUND:
-            continue
+    for stance in _stances(schedule):
         mine = [
             i
             for i, c in enumerate(schedule.contacts)
-            if c.start < phase.end and c.end > phase.start and not c.asked_for
+            if c.start < stance.end and c.end > stance.start and not c.asked_for
         ]
-        if not mine:
-            continue
-        times = np.array([phase.start])
+        times = np.array([stance.start])
         if any(standing.rides[i] is not None for standing in (before, after) for i in mine):
-            count = 2 + int(RIDE_RATE * (phase.end - phase.start))
-            times = np.linspace(phase.start, phase.end, count)
-        asked = turned + (wanted or {}).get(phase.name, 0.0)
-        move = _least_squares(phase.start, phase.end, times, mine, (before, after), asked)
+            count = 2 + int(RIDE_RATE * (stance.end - stance.start))
+            times = np.linspace(stance.start, stance.end, count)
+        turns = ((wanted or {}).get(schedule.contacts[i].name, 0.0) for i in mine)
+        asked = turned + max(turns, key=abs)
+        move = _least_squares(stance.start, stance.end, times, mine, (before, after), asked)
         turned += float(move.turns[-1] - move.turns[0])
         moves.append(move)
     return tuple(moves)
+
+
+def _stances(schedule: ContactSchedule) -> tuple[Interval, ...]:
+    """Intervals, s, in which contacts that were found stand; between them the body flies, hangs
+    where it was asked to, or something unseen carries it from one stance to the next."""
+    found = ((c.start, c.end) for c in schedule.contacts if not c.asked_for)
+    between = ((each.start, each.end) for each in gaps(found, schedule.duration))
+    return gaps(between, schedule.duration)
 
 
 def end_move(
