@@ -8,15 +8,16 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import replace
-from math import isclose, isfinite
+from math import isfinite
 from typing import Any
 
 import numpy as np
 
+from ...solver.analysis.motion_sketch import MotionSketch
 from ...solver.data.contacts import Contact, ContactSchedule, Interval, Phase, PhaseKind, numbered
 from ...solver.data.faults import EmptyRange, PlacedNowhere, UnreadableRepairs
 from ...solver.data.problem import AddedContact, ContactEdit, MassTable, MotionProblem, Pin
-from ...solver.data.recording import POSE_TOLERANCE, Recording, Skin, digest
+from ...solver.data.recording import Recording, Skin
 from ...solver.data.requests import Clear, Requests
 from ...solver.data.scene import CLEARANCE, SceneObject
 from ...solver.data.solver_options import HumanRanges, ShapeSource
@@ -38,89 +39,15 @@ from ..rows.held_contacts import (
     frame_of,
     movers,
 )
-from ..rows.phases import SAME, listed, phases_of, unseen_frames
+from ..rows.phases import listed, phases_of, unseen_frames
 from ..rows.protocols import ContactRow
 from ..scene.members import ground_members, present_members
 from ..takes.options import loop_options, text_of
+from .analysis_key import analysis_key, span_of
 from .bone_mapping import chosen_parts
 from .requests import joined, requests_of
 
 _METRES_PER_MM = 1e-3
-# Relative. Clips round their frame time: .00833 s is 4e-4 from .0083333 s. At this much a fall of
-# 1 m is 1 mm off. NTSC's rates are 1e-3 from whole ones, and are meant.
-SAME_RATE = 5e-4
-
-_Span = tuple[float, float]
-
-
-def wanted_range(settings: HangtimeSettings) -> tuple[float, float] | tuple[None, None]:
-    """First and last frame that the artist chose; (None, None) for the action's own."""
-    if not settings.use_range:
-        return None, None
-    return float(settings.first_frame), float(settings.last_frame)
-
-
-def span_of(settings: HangtimeSettings, recording: Recording) -> tuple[float, float]:
-    """First and last scene frame that are adapted; a recording may have frames beyond."""
-    first, last = wanted_range(settings)
-    if first is None or last is None:
-        return recording.ends
-    within = recording.window(first, max(first, last)).frames
-    return float(within[0]), float(within[-1])
-
-
-def analysis_key(
-    settings: HangtimeSettings,
-    recording: Recording,
-    grid: float = POSE_TOLERANCE,
-    *,
-    named: bool = False,
-    timed: bool = False,
-) -> str:
-    """What an analysis is of: the recording, the range where there are frames beyond it, and
-    whether it is a loop's, and its repairs. grid: of its poses; to their last bit they would be
-    others on another computer. named, timed: whether its action's name and its times are part of
-    it; the rate is kept beside it. Raises BadRecipe."""
-    told = recording if named else replace(recording, name="")
-    told = told if timed else replace(told, times=told.frames - told.frames[0])
-    span, key = span_of(settings, recording), digest(told, grid)
-    whole = span == (recording.frames[0], recording.frames[-1])
-    key = key if whole else f"{key} {span[0]:g} {span[1]:g}"
-    key = key if loop_options(settings) is None else f"{key} loop"
-    return f"{key}\n{settings.repairs}" if settings.repairs else key
-
-
-def analysis_is_of(settings: HangtimeSettings, recording: Recording) -> bool:
-    """Whether this is what was analysed, whatever its action is called now. Earlier versions kept
-    the key with its times, before that with its name, too, the first ones of every bit."""
-    if settings.analysed == analysis_key(settings, recording) and rates_since(settings) is None:
-        return True
-    return any(
-        settings.analysed == analysis_key(settings, recording, grid, named=named, timed=True)
-        for grid, named in ((POSE_TOLERANCE, False), (POSE_TOLERANCE, True), (0.0, True))
-    )
-
-
-def rates_since(settings: HangtimeSettings) -> tuple[float, float] | None:
-    """The scene's frames per second when the recording was analysed, and now; None where they are
-    the same, or an earlier version did not keep them."""
-    before, now = float(settings.analysed_rate), frames_per_second(current_scene())
-    return (before, now) if before and not isclose(before, now, rel_tol=SAME_RATE) else None
-
-
-def spans_since(settings: HangtimeSettings, recording: Recording) -> tuple[_Span, _Span] | None:
-    """First and last scene frame that were analysed, and that are to be adapted now; None where
-    they are the same, or an earlier version did not keep them."""
-    before, now = tuple(map(float, settings.analysed_span)), span_of(settings, recording)
-    if not any(before) or all(abs(a - b) < SAME for a, b in zip(before, now, strict=True)):
-        return None
-    return (before[0], before[1]), now
-
-
-def repaired_since(settings: HangtimeSettings) -> bool:
-    """Whether the recording was analysed with other repairs than it has now."""
-    key = str(settings.analysed)
-    return bool(key) and key.partition("\n")[2] != settings.repairs
 
 
 def problem_of(
@@ -303,6 +230,7 @@ def write_analysis(
     first, rate = span_of(settings, recording)[0], frames_per_second(current_scene())
     settings.measured_height = found.height
     settings.analysed, settings.analysed_rate = analysis_key(settings, recording), rate
+    settings.analysed_motion = MotionSketch.of(recording).text
     settings.analysed_span = span_of(settings, recording)
     unseen = [[first + u.start * rate, first + u.end * rate] for u in found.schedule.unseen]
     settings.unseen = json.dumps(unseen) if unseen else ""

@@ -10,7 +10,7 @@ from ...solver.arrays import FloatArray
 from ...solver.data.contacts import ContactSchedule
 from ..armature import fcurves
 from ..armature.incremental import Incremental
-from ..constraints.motion_problem import wanted_range
+from ..constraints.analysis_key import wanted_range
 from ..controls.driven import is_driven
 from ..properties.settings import action_settings, settings_of
 from ..rows.choices import BodyKind

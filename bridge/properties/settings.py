@@ -118,6 +118,7 @@ class HangtimeSettings(bpy.types.PropertyGroup):
 
     fit_quality: hidden(text())
     analysed: hidden(text())  # digest
+    analysed_motion: hidden(text())  # its sketch; "" where no one kept it
     analysed_rate: hidden(number())  # frames/s of the scene then; 0 where no one kept it
     # First and last scene frame that were analysed; both 0 where no one kept them.
     analysed_span: hidden(vector(size=2))

@@ -11,17 +11,17 @@ from ...bridge.armature.actions import (
 )
 from ...bridge.armature.incremental import Incremental
 from ...bridge.armature.read import last_keyed
-from ...bridge.constraints.bone_mapping import chosen_parts
-from ...bridge.constraints.motion_problem import (
+from ...bridge.constraints.analysis_key import (
     analysis_is_of,
     analysis_key,
-    problem_of,
     rates_since,
     repaired_since,
     span_of,
     spans_since,
     wanted_range,
 )
+from ...bridge.constraints.bone_mapping import chosen_parts
+from ...bridge.constraints.motion_problem import problem_of
 from ...bridge.controls.aimed import aimed_bones
 from ...bridge.controls.driven import beside_keys, turned_by_drivers
 from ...bridge.controls.held import held_bones

@@ -12,8 +12,9 @@ from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.incremental import Incremental
 from ...bridge.armature.played import wrong_speed
 from ...bridge.armature.traces_store import keep
+from ...bridge.constraints.analysis_key import analysis_is_of, span_of
 from ...bridge.constraints.bone_mapping import evidence_of, find_parts, missing_parts
-from ...bridge.constraints.motion_problem import analysis_is_of, problem_of, span_of, write_analysis
+from ...bridge.constraints.motion_problem import problem_of, write_analysis
 from ...bridge.properties.settings import (
     HangtimeSettings,
     action_settings,

@@ -13,7 +13,7 @@ from ...bridge.armature.poses import frames_per_second, require_unstretched
 from ...bridge.armature.strips import layers_above
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
-from ...bridge.constraints.motion_problem import SAME_RATE
+from ...bridge.constraints.analysis_key import SAME_RATE
 from ...bridge.constraints.standing import missed_contacts
 from ...bridge.constraints.status import write_status
 from ...bridge.controls.aimed import aimed_in, without

@@ -3,7 +3,7 @@
 import bpy
 
 from ...bridge.accessors import present
-from ...bridge.constraints.motion_problem import repaired_since
+from ...bridge.constraints.analysis_key import repaired_since
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ...bridge.repairs.stored import (
     applied,

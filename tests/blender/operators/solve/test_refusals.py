@@ -17,7 +17,7 @@ from hangtime.bridge import worker_client, worker_requests
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.pose_basis import basis_under
 from hangtime.bridge.armature.poses import sample
-from hangtime.bridge.constraints.motion_problem import analysis_is_of, analysis_key
+from hangtime.bridge.constraints.analysis_key import analysis_is_of, analysis_key
 from hangtime.bridge.rows.phases import phases_of
 from hangtime.operators.solve.adapt import read_wanted
 from hangtime.solver.data.recording import POSE_TOLERANCE
@@ -315,10 +315,19 @@ def test_a_file_that_another_processor_analysed_needs_no_analysis(
     settings, read = analysed.hangtime, complete(read_wanted(analysed))
     bits = np.random.default_rng(0).choice([-1e-15, 1e-15], read.heads.shape)
     assert analysis_is_of(settings, replace(read, heads=read.heads * (1.0 + bits)))
+    by_floats = np.random.default_rng(1).uniform(-1e-6, 1e-6, read.heads.shape)
+    assert analysis_is_of(settings, replace(read, heads=read.heads + by_floats))
     assert not analysis_is_of(settings, replace(read, heads=read.heads + 1e-3))
     for grid in (POSE_TOLERANCE, 0.0):  # as earlier versions kept it
         settings.analysed = analysis_key(settings, read, grid, named=True, timed=True)
         assert analysis_is_of(settings, read)
+
+
+def test_edit_mode_and_back_needs_no_analysis(analysed: bpy.types.Object) -> None:
+    """It moves bones by a fraction of a micrometre."""
+    for mode in ("EDIT", "OBJECT"):
+        bpy.ops.object.mode_set(mode=mode)
+    assert analysis_is_of(analysed.hangtime, complete(read_wanted(analysed)))
 
 
 @pytest.mark.slow
