@@ -52,6 +52,13 @@ class CheckRun:
     passed: bool
 
 
+def other_environments() -> Check:
+    """Made before anything is run in them."""
+    blenders = (each for each in ("5.2", "4.2", "5.0") if runs(each))
+    calls = tuple(f"test --blender {each} --help" for each in blenders)
+    return Check("environments of other Blenders", calls)
+
+
 def tests(blender: str, report: str, chosen: str) -> str:
     return f"test --blender {blender} --reports {{reports}}/{report} {chosen}"
 
@@ -134,7 +141,10 @@ def main() -> int:
         clone = folder / "clone"
         # Completed before several would do so at once.
         shared = Check("the environment", ("test --blender 4.5 --help",))
-        outcomes = [told(run(standalone(clone), folder))]
+        # To fetch an environment leaves a core idle, as does the clone's own.
+        with ThreadPoolExecutor(1) as pool:
+            others = pool.submit(run, other_environments(), folder)
+            outcomes = [told(run(standalone(clone), folder)), told(others.result())]
         take_over(clone)
         outcomes += run_all([shared], list(shared_checks()), folder)
         for failed in (outcome for outcome in outcomes if not outcome.passed):

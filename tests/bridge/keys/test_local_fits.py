@@ -34,7 +34,7 @@ def fits(start: BezierKeys, samples: np.ndarray) -> LocalFits:
     )
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.integers(0, 10_000))
 def test_derivatives_are_those_of_the_curves(seed: int) -> None:
     own, step = keys(seed), 1e-6
@@ -61,7 +61,7 @@ def test_derivatives_are_those_of_the_curves(seed: int) -> None:
         np.testing.assert_allclose(told, found, atol=1e-6)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.integers(0, 10_000))
 def test_fits_are_nearer_than_with_handles_at_a_third(seed: int) -> None:
     samples = keys(seed).at(FRAMES)

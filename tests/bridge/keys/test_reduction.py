@@ -47,7 +47,7 @@ def keys_of(figure: KeyedFigure) -> list[BezierKeys]:
             return end.value
 
 
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=4)
 @given(st.integers(0, 10_000))
 def test_the_error_is_kept_by_the_whole_chain_at_every_frame(seed: int) -> None:
     figure = chain(seed)
@@ -62,7 +62,7 @@ def test_the_error_is_kept_by_the_whole_chain_at_every_frame(seed: int) -> None:
     assert np.abs(turned - exact).max() <= 1.001 * ANGLE
 
 
-@settings(max_examples=3, deadline=None)
+@settings(max_examples=3)
 @given(st.integers(0, 10_000))
 def test_keys_are_few_and_no_bone_has_more_than_the_shared_columns(seed: int) -> None:
     figure = chain(seed)

@@ -271,7 +271,7 @@ def test_inverse_dynamics_of_a_changed_figure_is_mujocos(gravity: float, table: 
     assert relative(ours.torques[:, order], theirs[:, 6:]) < 1e-9
 
 
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 @given(
     mass=st.floats(0.05, 30.0),
     place=st.tuples(*[st.floats(-0.5, 0.5)] * 3),

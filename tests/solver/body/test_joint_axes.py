@@ -96,7 +96,7 @@ def test_preferred_axes_stand_while_they_serve() -> None:
     check_ball(ball_axes(tumble, preferred=(u, w)), tumble, 60.0)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seeds)
 def test_any_moderate_ball_joint_round_trips(seed: int) -> None:
     random = np.random.default_rng(seed)
@@ -111,7 +111,7 @@ def test_a_joint_that_never_moves_has_axes() -> None:
     assert np.abs(axes.rotation(axes.angles(R)) - R).max() < 1e-9
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seeds)
 def test_a_hinge_with_a_skew_axis_is_followed(seed: int) -> None:
     random = np.random.default_rng(seed)
@@ -140,7 +140,7 @@ def test_a_hinge_that_hardly_bends_falls_back_to_the_expected_axis(expected: lis
     assert found.after[0] @ axis > np.cos(np.radians(2.0))
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seeds)
 def test_a_universal_joint_finds_both_axes(seed: int) -> None:
     random = np.random.default_rng(seed)
@@ -166,7 +166,7 @@ def test_a_universal_joint_that_hardly_moves_falls_back_to_the_expected_axes() -
     assert residual_angle(axes, rotation_matrix(noise)) < 0.004
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seeds, st.integers(1, 3))
 def test_angles_of_a_joint_s_own_rotations_come_back(seed: int, dofs: int) -> None:
     random = np.random.default_rng(seed)

@@ -32,7 +32,7 @@ def random_matrix(seed: int, blocks: int, size: int) -> tuple[BlockBanded, Float
     return banded, dense
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(0, 2**31), st.integers(WINDOW, 12), st.integers(1, 6))
 def test_product_and_solution_are_those_of_the_dense_matrix(
     seed: int, blocks: int, size: int

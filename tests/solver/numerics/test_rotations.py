@@ -28,7 +28,7 @@ def test_axis_rotations(axis: int) -> None:
 
 
 @pytest.mark.parametrize("angle", ANGLES)
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(vectors)
 def test_vectors_round_trip_at_small_and_half_turns(
     angle: float, axis: tuple[float, float, float]
@@ -39,7 +39,7 @@ def test_vectors_round_trip_at_small_and_half_turns(
     assert rotation_vector(R) == pytest.approx(vector, abs=1e-10)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(vectors)
 def test_a_half_turn_has_either_axis(axis: tuple[float, float, float]) -> None:
     R = rotation_matrix(np.pi * unit(np.array(axis)))
@@ -70,7 +70,7 @@ def test_mean_rotation_is_proper_where_the_average_vanishes() -> None:
     assert np.linalg.det(mean) == pytest.approx(1.0)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(vectors)
 def test_perpendicular(axis: tuple[float, float, float]) -> None:
     v = unit(np.array(axis))

@@ -25,7 +25,7 @@ def coefficients_of(basis: SplineBasis, columns: int = 2) -> FloatArray:
     return np.random.default_rng(basis.n_coefficients).normal(size=(basis.n_coefficients, columns))
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(bases(), st.integers(0, 3))
 def test_values_and_derivatives_are_those_of_scipy(basis: SplineBasis, derivative: int) -> None:
     c = coefficients_of(basis)
@@ -60,7 +60,7 @@ def test_accelerations_jump_at_double_knots_only() -> None:
     assert jump(2)[DOUBLE[1:-1]].min() > 1.0
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(bases())
 def test_projection_reproduces_a_spline(basis: SplineBasis) -> None:
     c = coefficients_of(basis)
@@ -77,7 +77,7 @@ def test_projection_settles_spans_without_samples() -> None:
     assert basis.combine(found, dense)[:, 0] == pytest.approx(np.sin(3.0 * dense), abs=1e-3)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(bases(), st.data())
 def test_a_finer_basis_holds_the_same_curve(basis: SplineBasis, data: st.DataObject) -> None:
     chosen = data.draw(st.lists(st.booleans(), min_size=basis.n_spans, max_size=basis.n_spans))
@@ -90,7 +90,7 @@ def test_a_finer_basis_holds_the_same_curve(basis: SplineBasis, data: st.DataObj
     assert moved == pytest.approx(basis.combine(c, times), abs=1e-10)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(bases())
 def test_every_second_derivative_lies_in_the_force_space(basis: SplineBasis) -> None:
     """So that balance at the force nodes is balance at every instant."""
@@ -113,7 +113,7 @@ def test_every_second_derivative_lies_in_the_force_space(basis: SplineBasis) -> 
     assert weighted.sum(axis=1) == pytest.approx(second, abs=1e-9 * np.abs(second).max())
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(bases(), st.integers(1, 4))
 def test_gauss_instants_integrate_exactly(basis: SplineBasis, per: int) -> None:
     times, weights, spans = gauss_instants(basis.breaks, per)

@@ -59,7 +59,7 @@ def assert_optimal(
     assert reached[u != 0.0] == pytest.approx(at[u != 0.0], abs=size)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(SEED, st.integers(1, 12))
 def test_the_small_program_s_answer_is_scipy_s(seed: int, m: int) -> None:
     """With y = root w it is a least-squares problem with bounds on y."""
@@ -77,7 +77,7 @@ def test_no_program_is_solved_that_is_not_of_numbers(worst: float) -> None:
         answer(np.eye(2), np.array([0.0, worst]), np.array([1.0, worst]))
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(SEED, st.integers(1, 30))
 def test_multipliers_push_from_the_bound_they_are_at_whatever_the_guess(seed: int, m: int) -> None:
     random = np.random.default_rng(seed)
@@ -86,7 +86,7 @@ def test_multipliers_push_from_the_bound_they_are_at_whatever_the_guess(seed: in
     assert_optimal(root @ root.T, u, lower, upper)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(SEED, st.floats(1e-4, 1e-1))
 @pytest.mark.slow
 def test_rows_that_hardly_differ_are_told_apart(seed: int, width: float) -> None:
@@ -196,7 +196,7 @@ def settled(problem: Problem, bounded: BoundedStep) -> np.ndarray:
     return change
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @example(5971459, 4, 9)  # on which CasADi's qrqp ends outside the bounds and says success
 @given(SEED, st.integers(WINDOW, 9), st.integers(1, 10))
 def test_the_corrected_step_is_the_dense_program_s(seed: int, blocks: int, rows: int) -> None:
@@ -206,7 +206,7 @@ def test_the_corrected_step_is_the_dense_program_s(seed: int, blocks: int, rows:
     assert change == pytest.approx(best, abs=1e-4 * (1.0 + np.abs(best).max()))
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(SEED)
 def test_multipliers_balance_the_step(seed: int) -> None:
     """A d + G'u = 0."""
@@ -217,7 +217,7 @@ def test_multipliers_balance_the_step(seed: int) -> None:
     assert problem.A @ change.ravel() == pytest.approx(-push.ravel(), abs=1e-7)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(SEED)
 def test_rows_to_begin_with_change_the_way_not_the_answer(seed: int) -> None:
     problem = Problem(seed, 6, 8)
@@ -226,7 +226,7 @@ def test_rows_to_begin_with_change_the_way_not_the_answer(seed: int) -> None:
     assert settled(problem, cold) == pytest.approx(found, abs=1e-5 * (1.0 + np.abs(found).max()))
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(SEED, st.integers(1, 3))
 def test_series_change_the_way_not_the_answer(seed: int, count: int) -> None:
     problem = Problem(seed, 6, 8)
@@ -293,7 +293,7 @@ def test_rows_that_say_the_same_are_one() -> None:
     assert settled(thrice, thrice.step()) == pytest.approx(best, abs=1e-5)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(SEED)
 def test_rows_that_contradict_each_other_still_give_a_finite_step(seed: int) -> None:
     problem = Problem(seed, 6, 4)

@@ -164,7 +164,7 @@ def test_varimax_raises_its_criterion_and_is_orthogonal() -> None:
     assert turned.T @ turned == pytest.approx(np.eye(10), abs=1e-9)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(seeds, st.sampled_from([0.0, 1.0]))
 def test_orthomax_is_a_maximum(seed: int, gamma: float) -> None:
     random = np.random.default_rng(seed)
@@ -270,7 +270,7 @@ def from_pelvis(character: Character, angles: np.ndarray) -> np.ndarray:
     return places @ posed.rotations[0, 0]
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seeds, st.tuples(st.integers(0, 3), st.integers(0, 3)))
 def test_mirrored_legs_move_as_mirror_images(seed: int, turns: tuple[int, int]) -> None:
     """Large changes too: here each right angle is a left one, but for its sign."""

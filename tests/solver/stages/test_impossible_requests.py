@@ -6,9 +6,8 @@ from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.data.faults import NeedsTorques
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import ForceRequest, Requests, TorqueLimit, When
-from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.solver_options import Dynamics, Method, ObjectiveKind, SolverOptions
-from hangtime.solver.data.status import Durations, Status
+from hangtime.solver.data.status import Durations
 from hangtime.solver.results.violations import condition_violations, most_telling, worst_constraints
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.solver.transcription.motion import dynamics_residual
@@ -18,14 +17,14 @@ MOST_STEPS = 200
 TAKE_OFF = When(phase="ground 1")
 
 
-def legs() -> tuple[str, ...]:
+def lower_legs() -> tuple[str, ...]:
     character = fitted_hop().performance.character
-    parts = [(p, s) for p in (Part.THIGH, Part.SHANK, Part.FOOT) for s in (Side.LEFT, Side.RIGHT)]
+    parts = [(p, s) for p in (Part.SHANK, Part.FOOT) for s in (Side.LEFT, Side.RIGHT)]
     return tuple(character.bodies[character.body(p, s)].bone for p, s in parts)
 
 
 def limp_legs() -> MotionProblem:
-    limit = TorqueLimit("Limp legs", legs(), bound=0.0, when=TAKE_OFF)
+    limit = TorqueLimit("Limp legs", lower_legs(), bound=0.0, when=TAKE_OFF)
     return MotionProblem(requests=Requests(torques=(limit,)))
 
 
@@ -70,28 +69,18 @@ def test_no_grip_on_a_diagonal_take_off() -> None:
 
 
 @pytest.mark.slow
-def test_limp_legs_at_take_off() -> None:
-    """Arms and a start that is already moving may do it; then without the legs' help."""
-    names = ("Limp legs", "ground 1", "toe 1", "heel 1")
+def test_a_take_off_on_limp_knees_and_ankles() -> None:
+    """Arms and a start that is already moving do it; what curves leave of the limit is named."""
     found = adapt(fitted_hop(), limp_legs())
-    if found.solved:
-        missed = condition_violations(found)
-        assert "Limp legs" in {each.name for each in missed}
-        assert all(each.amount <= 3.0 * each.kind.tolerance for each in missed), missed
-        assert sum(len(o.steps) for o in found.outcomes) < MOST_STEPS
-    elif found.outcome.status is Status.NO_BODY:  # all holds, by what no body does, which is named
-        worst = worst_constraints(found, limp_legs())
-        assert worst
-        assert {each.kind for each in worst} <= {RowKind.SOLID, RowKind.RANGE}
-    elif found.reached == 1.0:  # by its nodes, but not between them: no success, and told by name
-        assert found.outcome.status is Status.MISSED
-        assert {each.name for each in worst_constraints(found, limp_legs())} == {"Limp legs"}
-    else:
-        check(found, limp_legs(), names)
+    assert found.solved
+    missed = condition_violations(found)
+    assert "Limp legs" in {each.name for each in missed}
+    assert all(each.amount <= 3.0 * each.kind.tolerance for each in missed), missed
+    assert sum(len(o.steps) for o in found.outcomes) < MOST_STEPS
 
 
 def test_reduced_dynamics_have_no_torques_to_limit() -> None:
-    limit = TorqueLimit("Weak knee", legs()[:1], bound=50.0)
+    limit = TorqueLimit("Weak knee", lower_legs()[:1], bound=50.0)
     solution = SolverOptions(dynamics=Dynamics.REDUCED)
     with pytest.raises(NeedsTorques) as caught:
         adapt(fitted_hop(), MotionProblem(requests=Requests(torques=(limit,), solution=solution)))
