@@ -40,12 +40,16 @@ def sentence(fault: Fault, translate: Translate = str) -> str:
 
 
 def together(found: Sequence[Fault]) -> list[Fault]:
-    """Faults, those of support that is unseen and of which no more is known in one."""
-    bare = [e for e in found if isinstance(e, faults.UnseenSupport) and not _variant(e)]
-    if len(bare) < 2:
-        return [*found]
-    spans = tuple((each.first, each.last) for each in bare)
-    return [faults.UnseenSupports(spans), *(each for each in found if each not in bare)]
+    """Faults, those of support that is unseen and of which no more is known, or no more than that
+    the body leans, in one."""
+    told = [*found]
+    for leaning in (False, True):
+        alike = [e for e in told if isinstance(e, faults.UnseenSupport) and _variant(e) == leaning]
+        if len(alike) > 1:
+            spans = tuple((each.first, each.last) for each in alike)
+            others = (each for each in told if each not in alike)
+            told = [faults.UnseenSupports(spans, leaning), *others]
+    return told
 
 
 def missed(violation: Violation, translate: Translate = str) -> str:
@@ -88,9 +92,11 @@ def _variant(fault: Fault) -> int:
         case faults.JoinedPhase():
             return bool(fault.kept)
         case faults.UnseenSupport():
-            carrying = bool(fault.boxes), bool(fault.hands), fault.rate is not None
+            carrying = fault.leaning, bool(fault.boxes), bool(fault.hands), fault.rate is not None
             mistaken = fault.exchanged, fault.skidding, fault.lying
             return max(i for i, each in enumerate((True, *carrying, *mistaken)) if each)
+        case faults.UnseenSupports():
+            return fault.leaning
         case faults.UnknownObject():
             return bool(fault.known)
         case faults.ChangedMeanwhile() | faults.RateChanged():

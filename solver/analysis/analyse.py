@@ -153,12 +153,14 @@ def _told(
         rate = agreed if _fitting_rate(performance, gap, floor_m) == agreed else None
         boxes: tuple[SupportBox, ...] = ()
         hands: tuple[AddedContact, ...] = ()
-        if _leans(performance, gap, floor_m):
+        leaning = _leans(performance, gap, floor_m)
+        if leaning:
             hands = _hands(performance, schedule, gap)
         elif rate is None:
             boxes = boxes_beneath(performance.times, points, gap, floor_m)
         skidding = rate is None and not boxes and gap in slid
-        yield UnseenSupport(first, last, boxes, hands, rate, recording.rate, skidding=skidding)
+        rates = rate, recording.rate
+        yield UnseenSupport(first, last, boxes, hands, *rates, leaning=leaning, skidding=skidding)
 
 
 def _hands(

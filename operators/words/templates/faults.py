@@ -165,6 +165,10 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
         "or let what carries it be ground in the panel World. If nothing does, give the scene the "
         "recording's frame rate.",
         "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
+        "fall, for hands, knees or the trunk are on it, as of who crawls, rolls or lies. No "
+        "contact is known there, so something unseen carries it; where it is hands, let them touch "
+        "(Add Contact, the + beside the contacts of a stance, or an [[add_contact]] in a recipe).",
+        "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
         "fall: the feet rest {boxes[0].size[2]:length} above the floor, as on a box. Add it (Add "
         "Box Here in the panel World, or an [[object]] in a recipe), or choose frames without it.",
         "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
@@ -189,10 +193,16 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     "its action at Scale {scale:.4g}; set the strip's Scale to {fitting_scale:.4g} (Nonlinear "
     "Animation editor, sidebar, Action Clip), or, where it is meant to be so, the scene's frame "
     "rate to {rate:.5g}.",
-    faults.UnseenSupports: "In frames {spans:spans} neither foot touches the ground, yet the body "
-    "does not fall, so something unseen carries it (a box, a rail, a hand); choose frames without "
-    "it, or let what carries it be ground in the panel World. If nothing does, give the scene the "
-    "recording's frame rate.",
+    faults.UnseenSupports: (
+        "In frames {spans:spans} neither foot touches the ground, yet the body does not fall, so "
+        "something unseen carries it (a box, a rail, a hand); choose frames without it, or let "
+        "what carries it be ground in the panel World. If nothing does, give the scene the "
+        "recording's frame rate.",
+        "In frames {spans:spans} neither foot touches the ground, yet the body does not fall, for "
+        "hands, knees or the trunk are on it, as of who crawls, rolls or lies. No contact is known "
+        "there, so something unseen carries it; where it is hands, let them touch (Add Contact, "
+        "the + beside the contacts of a stance, or an [[add_contact]] in a recipe).",
+    ),
     faults.FitNeedsSupport: "No motion comes near the recording unless something unseen carries "
     "the body in frames {spans:spans}, which the recipe refuses; correct the frames of the "
     "contacts there, add what does carry it (a contact, or an [[object]] that is ground), choose "

@@ -241,11 +241,11 @@ class FramesReversed(Fault):
 class UnseenSupport(Fault):
     """Nothing touches, yet the body does not fall: something unrecorded carries it (frames).
 
-    boxes: what would, where feet rest above the floor. hands: their contacts, where hands are on
-    the floor. rate: frames a second at which the body
-    would fall as gravity has it, where the scene's, scene_rate, is another. exchanged: whether the
-    legs are there, so that none of these is meant. skidding: whether feet are on the ground, and go
-    from place to place. lying: whether another axis than Z points from the feet to the head.
+    boxes: what would, where feet rest above the floor. leaning: whether another part of the body is
+    on the floor. hands: their contacts, where that is hands. rate: frames a second at which the
+    body would fall as gravity has it, where the scene's, scene_rate, is another. exchanged: whether
+    the legs are there, so that none of these is meant. skidding: whether feet are on the ground,
+    and go from place to place. lying: whether another axis than Z points from the feet to the head.
     """
 
     first: float
@@ -254,6 +254,7 @@ class UnseenSupport(Fault):
     hands: tuple[AddedContact, ...] = ()
     rate: float | None = None
     scene_rate: float = 0.0
+    leaning: bool = False
     exchanged: bool = False
     skidding: bool = False
     lying: bool = False
@@ -276,9 +277,10 @@ class ScaledStrip(Fault):
 
 @dataclass
 class UnseenSupports(Fault):
-    """The same in several spans (first, last frame), of which no more is known."""
+    """The same in several spans (first, last frame), of which no more is known, or leaning."""
 
     spans: tuple[tuple[float, float], ...]
+    leaning: bool = False
 
 
 @dataclass

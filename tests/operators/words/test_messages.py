@@ -221,6 +221,12 @@ def test_support_of_which_nothing_is_known_is_told_at_once() -> None:
     assert "In frames 20 to 31, 40 to 55 neither foot" in first
     assert "as on a box" in second
     assert together([box, bare[0]]) == [box, bare[0]]
+    crawls = [UnseenSupport(80.0, 91.0, leaning=True), UnseenSupport(95.0, 99.0, leaning=True)]
+    first, second = map(sentence, together([*bare, *crawls]))
+    assert "In frames 80 to 91, 95 to 99 neither foot" in first
+    assert "for hands, knees or the trunk are on it" in first
+    assert "20 to 31, 40 to 55" in second
+    assert "hands, knees" in sentence(crawls[0])
     legs = UnseenSupport(60.0, 70.0, exchanged=True)
     assert together([legs, bare[0]]) == [legs, bare[0]]
     assert "the left leg for the right one; exchange them back" in sentence(legs)
