@@ -105,7 +105,11 @@ def main(argv: list[str]) -> int:
     # what is measured here has memory as the worker in Blender has.
     variables = env.variables() | ONE_THREAD | KEPT_MEMORY
     launcher = os.path.join(virtual_environment.ROOT, "devtools", "package.py")
-    code = subprocess.call([env.python, launcher, module, *leading, *rest], env=variables)
+    words = [env.python, launcher, module, *leading, *rest]
+    if os.name == "posix":  # one process, so that whoever ends this one ends the command
+        sys.stdout.flush()
+        os.execve(env.python, words, variables)
+    code = subprocess.call(words, env=variables)
     return code if code >= 0 else 128 - code  # a signal, the way shells count it
 
 

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import signal
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from io import TextIOWrapper
 from itertools import islice
 from pathlib import Path
 
-from ..operators.headless.explained import CANCELLED, WRONG_INPUT, explained
+from ..operators.headless.explained import CANCELLED, WRONG_INPUT, ended_by_signals, explained
 from ..solver.data.faults import Fault
 from ..solver.numerics.parallel import cores
 from .collect.collecting import collect
@@ -179,7 +178,7 @@ def _count(text: str) -> int:
 def run_batch(options: argparse.Namespace) -> int:
     """Plans, and solves what is not solved yet. Raises Fault, BatchFault."""
     folder: Path = options.out
-    with batch_lock(folder), _ended_by_signals():
+    with batch_lock(folder), ended_by_signals():
         planned = _planned(options)
         manifest = planned.manifest
         progress = Progress(sys.stdout, len(manifest.cells), _done(manifest))
@@ -253,20 +252,6 @@ def _told_held(batch: GatheredBatch) -> str:
         return ""
     which = f"{worse.count(0.0)} of the {len(worse)} done"
     return f" In {which} no line of the certificate fails, or only as in the recording."
-
-
-@contextmanager
-def _ended_by_signals() -> Iterator[None]:
-    """Whoever ends the process politely has it end its workers and keep what is done."""
-
-    def interrupt(_number: int, _frame: object) -> None:
-        raise KeyboardInterrupt
-
-    before = signal.signal(signal.SIGTERM, interrupt)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
 
 
 def plan_batch(options: argparse.Namespace) -> int:

@@ -25,9 +25,10 @@ from ..words.warning_text import warning_lines
 from .clip import Clip, LoadedClip, load
 from .doctor import examined, told, write_recipe_of
 from .doubts import doubts_about
-from .explained import CANCELLED, NO_SOLUTION, WRONG_INPUT, explained
+from .explained import CANCELLED, NO_SOLUTION, WRONG_INPUT, ended_by_signals, explained
 from .outbox import Outbox, not_writable
 from .outputs import Outputs, linked_files, require_apart, require_exported, require_place
+from .result_files import every_name
 from .stages import WIDTH, Stages
 
 
@@ -42,7 +43,8 @@ def run(argv: Sequence[str]) -> int:
         return WRONG_INPUT if end.code else 0
     act: Callable[[argparse.Namespace], None] = options.act
     try:
-        act(options)
+        with ended_by_signals():
+            act(options)
     except Fault as fault:
         print(explained(fault, options.recipe), file=sys.stderr)
         return NO_SOLUTION if isinstance(fault, NoSolution) else WRONG_INPUT
@@ -170,6 +172,7 @@ def adapt(options: argparse.Namespace) -> None:
     inputs = (*clip.files, options.recipe, *recipe.meshes)
     require_apart(inputs, options.out, export)
     with Outbox(options.out) as outbox:
+        outbox.sweep(every_name())
         loaded = load(clip, problem, stages, recipe.repairs)
         require_apart(linked_files(), options.out, export)
         require_place(loaded, wanted, recipe.loop)

@@ -1,8 +1,11 @@
-"""What every command of a terminal ends with: its exit code, and a fault in words.
+"""What every command of a terminal ends with: its exit code, a fault in words, a signal.
 
 Loads none of the solver's stages: a batch plans and hands out cells without them.
 """
 
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from ...bridge.recipe.contacts import added_texts
@@ -25,3 +28,17 @@ def explained(fault: Fault, recipe: Path | None) -> str:
         return sentence(fault)
     line = locate(read_recipe_text(recipe), fault)
     return sentence(fault) if line is None else f"{recipe_place(recipe, line)}: {sentence(fault)}"
+
+
+@contextmanager
+def ended_by_signals() -> Iterator[None]:
+    """Whoever ends the process politely has it clean up, as Ctrl-C does: KeyboardInterrupt."""
+
+    def interrupt(_number: int, _frame: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)

@@ -1,6 +1,7 @@
 """Files that appear in the output folder together or not at all."""
 
 import os
+from collections.abc import Iterable
 from contextlib import suppress
 from errno import EISDIR
 from pathlib import Path
@@ -47,6 +48,17 @@ class Outbox:
             with suppress(FileNotFoundError, NotADirectoryError):
                 self._part(name).unlink()
         self._remove_made()
+
+    def sweep(self, names: Iterable[str]) -> None:
+        """Removes what a run that was killed has left of the files with these names.
+
+        Raises OutputNotWritable.
+        """
+        for name in names:
+            try:
+                self._part(name).unlink(missing_ok=True)
+            except OSError as error:
+                raise not_writable(self._part(name), error) from error
 
     def path(self, name: str) -> Path:
         """The path to write the file to that shall be called `name`."""

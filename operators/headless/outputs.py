@@ -24,7 +24,16 @@ from ...solver.worker.pipeline import AdaptationResult
 from .clip import LoadedClip
 from .outbox import Outbox
 from .quiet import quiet
-from .result_files import REPORTS, TRAJECTORY, write_report, write_trajectory
+from .result_files import (
+    BEST,
+    EXPORTED,
+    FILM,
+    NAMES,
+    PICTURE,
+    SAVED,
+    write_report,
+    write_trajectory,
+)
 from .stages import Stages
 
 if TYPE_CHECKING:  # as in clip.py
@@ -38,17 +47,12 @@ if TYPE_CHECKING:  # as in clip.py
     from ...solver.data.contacts import ContactSchedule
     from ...solver.data.reports.keys import MissedContact
 
-EXPORTED = "adapted"  # file name without ending
-SAVED = f"{EXPORTED}.blend"
-BEST = "best_found.blend"
-PICTURE, FILM = "sheet.png", "film.mp4"
 ASIDE = 1.5  # m; how far the recording stands beside the adapted figure
 
 
 def require_apart(inputs: Iterable[Path], folder: Path, export: ExportOptions) -> None:
     """Before a solve takes its seconds. inputs: what a job reads. Raises WouldReplaceInput."""
-    names = (SAVED, BEST, PICTURE, FILM, TRAJECTORY, *REPORTS)
-    results = (_exported(folder, export), *(folder / name for name in names))
+    results = (_exported(folder, export), *(folder / name for name in NAMES))
     there = [path for path in results if path.exists()]
     for read, written in product(inputs, there):
         if read.exists() and written.samefile(read):

@@ -1,4 +1,4 @@
-"""Files of a result that need no Blender: trajectory and report."""
+"""Files of a result: their names, and those that need no Blender, trajectory and report."""
 
 from __future__ import annotations
 
@@ -13,8 +13,20 @@ from ..words.report_text import as_text
 from ..words.warning_text import warnings_of
 from .outbox import Outbox, not_writable
 
+EXPORTED = "adapted"  # file name without ending
+SAVED = f"{EXPORTED}.blend"
+BEST = "best_found.blend"
+PICTURE, FILM = "sheet.png", "film.mp4"
 TRAJECTORY = "trajectory.npz"
 REPORTS = "report.json", "report.txt"  # for programs, for people
+NAMES = (SAVED, BEST, PICTURE, FILM, TRAJECTORY, *REPORTS)  # of all but the exported file
+
+
+def every_name() -> tuple[str, ...]:
+    """The names that files of a job can have, whatever it is asked for."""
+    from ...bridge.exports.engines import ENDINGS  # needs Blender
+
+    return (*NAMES, *(f"{EXPORTED}{ending}" for ending in ENDINGS.values()))
 
 
 def write_trajectory(result: AdaptationResult, outbox: Outbox) -> None:

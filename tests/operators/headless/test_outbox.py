@@ -68,3 +68,12 @@ def test_nothing_is_delivered_where_a_folder_has_a_files_name(tmp_path: Path) ->
         write_over_a_folder(tmp_path)
     assert (tmp_path / "report.json").read_text() == "old"
     assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_what_a_killed_run_has_left_is_removed_and_nothing_else(tmp_path: Path) -> None:
+    killed = Outbox(tmp_path)
+    killed.write_text("sheet.png", "half of it")
+    (tmp_path / "unfinished-symphony.txt").write_text("the artist's")
+    with Outbox(tmp_path) as outbox:
+        outbox.sweep(["sheet.png", "film.mp4"])
+    assert [path.name for path in tmp_path.iterdir()] == ["unfinished-symphony.txt"]

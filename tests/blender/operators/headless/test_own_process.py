@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
+from hangtime.operators.headless.explained import CANCELLED
 from hangtime.tests.blender.helpers.jobs import EDIT
 
 ROOT = Path(__file__).resolve().parents[4]
@@ -42,3 +44,18 @@ def test_a_result_is_a_new_slot(tmp_path: Path, clip: Path) -> None:
     adapted(recipe, out)
     bpy.ops.wm.open_mainfile(filepath=str(out / "adapted.blend"))
     assert max(len(action.slots) for action in bpy.data.actions) == 2
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot end a process politely")
+def test_a_run_that_is_ended_while_it_writes_leaves_nothing(tmp_path: Path) -> None:
+    recipe, out = ROOT / "examples" / "loops" / "run_cycle.toml", tmp_path / "out"
+    words = ["adapt", "--recipe", str(recipe), "--out", str(out)]
+    with subprocess.Popen([sys.executable, str(ROOT / "dev.py"), *words]) as run:
+        deadline = time.monotonic() + 200.0
+        while not any(out.glob("unfinished-*.blend")) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        assert run.poll() is None
+        run.terminate()
+        assert run.wait(60) == CANCELLED
+    assert not out.exists()
