@@ -11,6 +11,7 @@ from ...solver.data.row_kinds import RowKind, Violation
 from ...solver.data.status import Status
 from .doctor_text import damage_sentence
 from .templates import (
+    ASKED,
     AT_FRAME,
     AT_ITS_END,
     DAMAGED,
@@ -145,6 +146,9 @@ class _Formatter(Formatter):
                 return value if value.endswith("?") else f"{value}."
             case "outcome":
                 return outcome(value, self._translate)
+            case "asked":
+                told = _few([f"“{name}”" for name in value], self._translate)
+                return f" {self._translate(ASKED).format(told)}" if value else ""
             case "at":
                 return "" if value is None else self._translate(AT_FRAME).format(value)
             case "damages":

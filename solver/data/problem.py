@@ -124,6 +124,11 @@ class MotionProblem:
         return repr((known, self.skin and self.skin.digest()))
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """The artist's names of all that is asked for."""
+        return (*(pin.name for pin in self.pins), *self.requests.names)
+
+    @property
     def pins_alone(self) -> bool:
         """Whether nothing but pins is asked for, of a recording as it was found: then those of its
         frames alone may be solved that the pins are about (worker/edited_part.py)."""

@@ -412,5 +412,6 @@ def dynamics_of(motion: Motion) -> InverseDynamics:
 
 
 def _unsolved(kind: type[NoSolution], adaptation: Adaptation, problem: MotionProblem) -> NoSolution:
-    worst = most_telling(adaptation, problem)
-    return kind(adaptation.outcome.status, worst, adaptation.reached)
+    reason, worst = adaptation.outcome.status, most_telling(adaptation, problem)
+    asked = () if reason is Status.STOPPED else problem.names
+    return kind(reason, worst, adaptation.reached, asked=asked)

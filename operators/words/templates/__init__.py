@@ -7,6 +7,7 @@ messages.py.
 from ....solver.data.faults import Fault
 from .faults import FAULTS
 from .faults import PLACES as PLACES
+from .outcomes import ASKED as ASKED
 from .outcomes import AT_FRAME as AT_FRAME
 from .outcomes import AT_ITS_END as AT_ITS_END
 from .outcomes import DAMAGED as DAMAGED

@@ -132,10 +132,10 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     faults.ContradictoryPins: "“{first}” and “{second}” contradict each other by {metres:length}; "
     "no pose holds both, so move one of them or move them together.",
     faults.NoSolution: (
-        "{reason:outcome}{damages:damages}",
-        "{reason:outcome}{damages:damages} Furthest off: {worst:missed}.",
-        "{reason:outcome}{damages:damages} The best found goes {reached:percent} of the way; "
-        "furthest off: {worst:missed}.",
+        "{reason:outcome}{asked:asked}{damages:damages}",
+        "{reason:outcome}{asked:asked}{damages:damages} Furthest off: {worst:missed}.",
+        "{reason:outcome}{asked:asked}{damages:damages} The best found goes {reached:percent} of "
+        "the way; furthest off: {worst:missed}.",
         "No motion was found, and the fit that it begins from is {fit_off_cm:.3g} cm off the "
         "recording (rms). Correct the contacts' frames, or mend the recording, before you ask for "
         "less.{damages:damages}",

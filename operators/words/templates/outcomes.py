@@ -6,9 +6,9 @@ from ....solver.data.status import Status
 OUTCOMES = {
     Status.SOLVED: "Solved: the motion obeys physics and everything asked for holds.",
     Status.STALLED: "No motion was found that obeys physics and holds all that is asked for. "
-    "Ask for less of what is named here, move pins less, or check the contacts' frames.",
+    "Ask for less of what is named here, or check the contacts' frames.",
     Status.TOO_MANY_STEPS: "No motion was found within the allowed number of steps. "
-    "Ask for less of what is named here, move pins less, or check the contacts' frames.",
+    "Ask for less of what is named here, or check the contacts' frames.",
     Status.MISSED: "The motion obeys physics, but between the solver's instants something asked "
     "for is missed by more than is promised. Loosen what is named here a little.",
     Status.NO_BODY: "The motion obeys physics and what was asked for holds, but no body can do it: "
@@ -17,6 +17,7 @@ OUTCOMES = {
     Status.STOPPED: "Stopped before everything was met; the motion is as the solver left it.",
 }
 
+ASKED = "Asked for: {}."
 DAMAGED = (
     "The recording is damaged, which may be why; Examine, or the command doctor, tells more: {}"
 )

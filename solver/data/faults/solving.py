@@ -71,7 +71,7 @@ class NoSolution(Fault):
 
     reached: the share of the way that the best motion found goes. damages: of the recording, which
     may be the cause. fit_off_cm: how far, rms, the fit is off the recording where that is too far
-    to begin from; 0 where it is near.
+    to begin from; 0 where it is near. asked: names of all that was asked for.
     """
 
     reason: Status
@@ -79,6 +79,7 @@ class NoSolution(Fault):
     reached: float = 0.0
     damages: tuple[Damage, ...] = ()
     fit_off_cm: float = 0.0
+    asked: tuple[str, ...] = ()
 
     @property
     def goes_part(self) -> bool:

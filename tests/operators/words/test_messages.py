@@ -157,6 +157,13 @@ def test_a_failed_solve_names_what_is_off() -> None:
     assert "in flight 1" in sentence(fault)
 
 
+def test_a_failed_solve_names_what_was_asked() -> None:
+    row = Violation("ground 1", RowKind.BALANCE, 18.3)
+    told = sentence(NoSolution(Status.STALLED, (row,), asked=("Timing 1", "Briefcase")))
+    assert "named here, or check the contacts' frames. Asked for: “Timing 1”, “Briefcase”." in told
+    assert "pin" not in told
+
+
 def test_a_solve_that_begins_from_a_far_fit_points_there_and_not_to_what_was_asked() -> None:
     near, far = (sentence(NoSolution(Status.NO_BODY, fit_off_cm=cm)) for cm in (0.0, 26.5))
     assert near == OUTCOMES[Status.NO_BODY]
