@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from ...solver.analysis.leaps import Leap, Stand, leaps
+from ...solver.analysis.pinned_places import pinned_places
+from ...solver.data.faults import Fault
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
 from ...solver.data.scaling import scaled_recording
@@ -26,7 +31,11 @@ def doubts_about(
     """A line for each. problem: as it was asked for. subject: the analysis of what it is about."""
     frames = subject.recording.frames
     doubts = file_doubts(origin) + doubts_of(
-        problem, subject.height, frames[:0] if problem.loop else frames
+        problem,
+        subject.height,
+        frames[:0] if problem.loop else frames,
+        subject.schedule.phases,
+        _leaps(subject),
     )
     unscaled = scaled_recording(subject.recording, 1.0 / subject.factor)
     doubts += distance_doubts(problem, unscaled.heads)
@@ -37,3 +46,24 @@ def doubts_about(
     doubts += up_doubts(repairs.up, lies=lies)
     feet, on_objects = subject.schedule.floor_m, bool(subject.stood_on)
     return doubts + floor_doubts(repairs.floor, feet, on_objects=on_objects)
+
+
+def _leaps(subject: Subject) -> list[Leap]:
+    """In true lengths; none where a pin is wrong, which the solve refuses in words."""
+    schedule, recording = subject.analysis.schedule, subject.recording
+    still = {thing.name for thing in subject.problem.scene if not thing.moves}
+    pins = (
+        pin if pin.on in still else replace(pin, on=None)  # what moves is elsewhere by then
+        for pin in subject.problem.pins
+    )
+    try:
+        asked = pinned_places(
+            replace(subject.problem, pins=tuple(pins)), subject.analysis.performance, schedule
+        )
+    except Fault:
+        return []
+    stands = (
+        Stand(contact.start, contact.end, contact.place, place)
+        for contact, place in zip(schedule.contacts, asked, strict=True)
+    )
+    return leaps(schedule.phases, stands, recording.times, recording.heads)

@@ -21,6 +21,7 @@ from ...bridge.constraints.analysis_key import (
     wanted_range,
 )
 from ...bridge.constraints.bone_mapping import chosen_parts
+from ...bridge.constraints.leaps import leaps_of, timed_phases
 from ...bridge.constraints.motion_problem import problem_of
 from ...bridge.controls.aimed import aimed_bones
 from ...bridge.controls.driven import beside_keys, turned_by_drivers
@@ -60,6 +61,7 @@ from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.doubt_text import distance_doubts, doubts_of, empty_doubts
+from ..words.request_doubt_text import whole_turn_doubts
 from .common import chosen_armature, hindrance, quick_solution, refined_solution, required_armature
 from .keys import key_options
 from .live import live
@@ -135,9 +137,7 @@ class Adapting(TaskOperator):
         first, last = wanted_range(settings)
         frames = None if first is None or last is None else (first, last)
         meant = replace(asked.problem, frames=frames)
-        doubts = doubts_of(meant, settings.measured_height, asked.recording.frames)
-        far = distance_doubts(meant, asked.recording.heads)
-        for doubt in (*doubts, *far, *empty_doubts(left)):
+        for doubt in (*window_doubts(settings, asked.recording, meant), *empty_doubts(left)):
             self.report({"WARNING"}, doubt)
         return replace(asked, problem=replace(asked.problem, requests=requests))
 
@@ -233,6 +233,19 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
         scene,
         aimed,
     )
+
+
+def window_doubts(
+    settings: HangtimeSettings, recording: Recording, problem: MotionProblem
+) -> list[str]:
+    """What is hardly meant: lines. problem: as it was asked for."""
+    height = settings.measured_height
+    jumped = leaps_of(settings, recording, problem.height / height if problem.height else 1.0)
+    return [
+        *doubts_of(problem, height, recording.frames, timed_phases(settings, recording), jumped),
+        *distance_doubts(problem, recording.heads),
+        *whole_turn_doubts((stance.name, stance.turned) for stance in settings.stances),
+    ]
 
 
 def followed_problem(settings: HangtimeSettings, asked: Asked, held: str) -> MotionProblem:

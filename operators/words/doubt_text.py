@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...solver.analysis.leaps import Leap
 from ...solver.arrays import FloatArray
+from ...solver.data.contacts import Phase
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import ChosenTake, Origin
-from ...solver.data.requests import AddedMass
 from ...solver.doctor.finding import Finding
 from ...solver.doctor.repairs import UpAxis
 from .doctor_text import finding_sentence
 from .messages import length
+from .request_doubt_text import highest, quoted, request_doubts, there
 
 if TYPE_CHECKING:  # which Blender's own module is needed for, and batches do without
     from ...bridge.scene.moving_empties import LeftEmpty
@@ -23,9 +25,6 @@ if TYPE_CHECKING:  # which Blender's own module is needed for, and batches do wi
 # Body mass over squared stature, kg/m². Adults above 40 have obesity of the third class; of healthy
 # children the leanest have 13 (WHO).
 LEANEST, HEAVIEST = 12.0, 45.0
-MOST_CARRIED = 1.0  # body masses; a weightlifter moves more, but does not jump with it
-MOST_GRAVITY = 25.0  # m/s², Jupiter's
-LONGEST, SHORTEST = 4.0, 0.25  # times a phase's duration
 A_FRAME = 1.0
 MOST_AWAY = 30.0  # m; the longest triple jumps go 18
 MOST_DAMAGES = 4
@@ -33,22 +32,28 @@ MOST_TAKES = 8  # by name, of a file that may hold a hundred
 SOLES = 0.1  # m, that the highest platform shoes put between foot and floor
 
 
-def doubts_of(problem: MotionProblem, height: float, frames: FloatArray) -> list[str]:
+def doubts_of(
+    problem: MotionProblem,
+    height: float,
+    frames: FloatArray,
+    phases: Sequence[Phase] = (),
+    leaps: Sequence[Leap] = (),
+) -> list[str]:
     """A line for each amount that nobody means; none where all is as one would expect.
 
     height: m, as recorded. frames: (T,) that the clip has of those asked for; none where these do
-    not tell.
+    not tell. phases, leaps: of the recording, the latter in true lengths.
     """
+    masses = dict.fromkeys((problem.mass, problem.requests.body.mass or problem.mass))
     return [
         *_of_frames(problem, frames),
-        *_of_build(problem.mass, problem.height or height),
-        *_of_loads(problem),
-        *_of_timings(problem),
+        *(line for mass in masses for line in _of_build(mass, problem.height or height)),
+        *request_doubts(problem, phases, leaps),
     ]
 
 
 def distance_doubts(problem: MotionProblem, heads: FloatArray) -> list[str]:
-    """A line where pins or points are further from the recording than anybody means.
+    """Lines where pins or points are further from the recording, or higher, than anybody means.
 
     heads: (T, bones, 3) m, world; of the recording, in the lengths that the problem is in.
     """
@@ -58,13 +63,7 @@ def distance_doubts(problem: MotionProblem, heads: FloatArray) -> list[str]:
     )
     off = {name: _away(place, shift, heads) for name, place, shift in asked}
     far = {name: metres for name, metres in off.items() if metres > MOST_AWAY}
-    if not far:
-        return []
-    names, most = _quoted(far), max(far.values())
-    return [
-        f"{names}: {most:.0f} m away from the recording, further than anybody jumps; lengths "
-        "are in metres, and a whole scene is moved with its armature"
-    ]
+    return [*_of_far(far), *_of_high(problem, heads)]
 
 
 def empty_doubts(left: Sequence[LeftEmpty]) -> list[str]:
@@ -73,7 +72,7 @@ def empty_doubts(left: Sequence[LeftEmpty]) -> list[str]:
         return []
     most = max(left, key=lambda each: each.away)
     return [
-        f"{_quoted(each.contact for each in left)}: placed by empties that move on while the "
+        f"{quoted(each.contact for each in left)}: placed by empties that move on while the "
         f"contact stands (“{most.empty}” by {length(most.away)} from frame {most.first:.0f} to "
         f"{most.last:.0f}); it stays where its empty is first. To have it ride, add what the empty "
         "hangs on to the surfaces of World, and choose it as the contact's On"
@@ -113,7 +112,7 @@ def _of_choice(clip: str, chosen: ChosenTake | None) -> Iterator[str]:
 
 def _first_quoted(names: Sequence[str]) -> str:
     more = len(names) - MOST_TAKES
-    return _quoted(names[:MOST_TAKES]) + (f" and {more} more" if more > 0 else "")
+    return quoted(names[:MOST_TAKES]) + (f" and {more} more" if more > 0 else "")
 
 
 def damage_doubts(found: Sequence[Finding]) -> list[str]:
@@ -147,6 +146,29 @@ def floor_doubts(stated: float, feet: float, *, on_objects: bool) -> list[str]:
     return [f"“floor = {stated:g}” is not where the feet are: {there}. State that height, or none"]
 
 
+def _of_far(far: Mapping[str, float]) -> list[str]:
+    """far: m, by name."""
+    if not far:
+        return []
+    names, most = quoted(far), max(far.values())
+    return [
+        f"{names}: {most:.0f} m away from the recording, further than anybody jumps; lengths "
+        "are in metres, and a whole scene is moved with its armature"
+    ]
+
+
+def _of_high(problem: MotionProblem, heads: FloatArray) -> Iterator[str]:
+    """Points that are higher above the recording than a body can rise."""
+    gravity, top = problem.requests.body.gravity, float(heads[..., 2].max())
+    for point in problem.requests.points:
+        above = -np.inf if point.place is None else point.place[2] - top
+        if above > highest(gravity):
+            yield (
+                f"“{point.name}” is {length(above)} above all that was recorded, and nobody"
+                f"{there(gravity)} jumps higher than {length(highest(gravity))}"
+            )
+
+
 def _of_frames(problem: MotionProblem, there: FloatArray) -> Iterator[str]:
     if problem.frames is None or not len(there):
         return
@@ -176,36 +198,8 @@ def _masses(least: float, most: float) -> str:
     return f"{low} to {high} {unit}"
 
 
-def _of_loads(problem: MotionProblem) -> Iterator[str]:
-    loads = problem.requests.body.added
-    mass = problem.requests.body.mass or problem.mass
-    carried = sum(_share(load, mass) for load in loads)
-    if carried > MOST_CARRIED:
-        names = _quoted(load.name for load in loads)
-        yield f"{names}: {carried:.3g} times the body's own mass, with which nobody jumps"
-    if problem.requests.body.gravity > MOST_GRAVITY:
-        yield (
-            f"Gravity is {problem.requests.body.gravity:g} m/s², more than on any planet; "
-            "the Earth's is 9.81"
-        )
-
-
-def _of_timings(problem: MotionProblem) -> Iterator[str]:
-    for timing in problem.requests.timings:
-        if timing.factor is not None and not SHORTEST <= timing.factor <= LONGEST:
-            yield f"“{timing.name}” lets {timing.phase} last {timing.factor:g} times as long"
-
-
-def _share(load: AddedMass, mass: float) -> float:
-    return (load.share or 0.0) if load.mass is None else load.mass / mass
-
-
 def _away(place: Sequence[float] | None, shift: Sequence[float], heads: FloatArray) -> float:
     """How far, m, what is shifted off its place, else off the recording, is from the latter."""
     if place is None:
         return float(np.linalg.norm(shift))
     return float(np.linalg.norm(heads - np.add(place, shift), axis=2).min())
-
-
-def _quoted(names: Iterable[str]) -> str:
-    return ", ".join(f"“{name}”" for name in names)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from hangtime.operators.headless.doubts import doubts_about
 from hangtime.operators.words.doubt_text import MOST_DAMAGES, damage_doubts
-from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.doctor.finding import Finding, FindingKind
@@ -51,6 +51,18 @@ def test_ground_of_the_scene_may_be_anywhere() -> None:
     lifted = replace(lifted, heads=lifted.heads + np.array([0.0, 0.0, 0.5]))
     stage = thing("Stage", box((9.0, 9.0, 0.5)), (0.0, 0.0, 0.25))
     assert told(lifted, replace(USUAL, scene=(stage,))) == []
+
+
+def test_a_landing_that_nobody_reaches_is_told_at_the_stated_stature() -> None:
+    asked = replace(USUAL, pins=(Pin("Landing", "ground 2", offset=(0.0, 0.0, 1.5)),))
+    assert told(load_recording(JUMP), asked) == []
+    _, doubt = told(load_recording(JUMP), replace(asked, height=2.6))
+    assert "“Landing”: ground 2 would be 2.3" in doubt
+
+
+def test_a_pin_that_the_solve_refuses_tells_nothing_of_its_leap() -> None:
+    asked = replace(USUAL, pins=(Pin("Landing", "ground 9", offset=(5.0, 0.0, 0.0)),))
+    assert told(load_recording(JUMP), asked) == []
 
 
 def test_of_many_damages_the_first_few_are_told() -> None:

@@ -9,7 +9,6 @@ from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import (
     AddedMass,
     BodyChange,
-    PhaseTiming,
     PointRequest,
     Requests,
     When,
@@ -49,10 +48,8 @@ def test_usual_amounts_are_not_asked_about(problem: MotionProblem) -> None:
         (asking(added=(AddedMass("Anvil", "Hand", share=20.0),)), "“Anvil”: 20 times"),
         (asking(added=(AddedMass("Anvil", "Hand", mass=1400.0),)), "“Anvil”: 20 times"),
         (asking(gravity=98.1), "Gravity is 98.1"),
-        (
-            replace(USUAL, requests=Requests(timings=(PhaseTiming("Slow", "flight 1", 40.0),))),
-            "“Slow” lets flight 1 last 40 times",
-        ),
+        (asking(mass=700.0), "700 kg is a mass that nobody of 1.76 m has"),
+        (asking(mass=7.0), "7 kg is a mass that nobody"),
     ],
 )
 def test_amounts_that_nobody_means_are_told(problem: MotionProblem, words: str) -> None:
@@ -80,6 +77,14 @@ def test_places_that_nobody_means_are_told_by_name_and_the_furthest_distance() -
     points = (PointRequest("Moon", "Hand", When(), place=(52.0, 0.0, 1.0)),)
     (told,) = distance_doubts(replace(USUAL, pins=pins, requests=Requests(points=points)), HEADS)
     assert told.startswith("“Landing”, “Elsewhere”, “Moon”: 100 m away")
+
+
+def test_a_point_that_nobody_jumps_to_is_told_but_on_the_moon() -> None:
+    requests = Requests(points=(PointRequest("Ball", "Hand", When(), place=(2.0, 0.0, 3.0)),))
+    (told,) = distance_doubts(replace(USUAL, requests=requests), HEADS)
+    assert told.startswith("“Ball” is 2.00 m above all that was recorded")
+    moon = replace(requests, body=BodyChange(gravity=1.62))
+    assert distance_doubts(replace(USUAL, requests=moon), HEADS) == []
 
 
 def test_a_child_with_a_man_s_mass_is_told_by_its_measured_height() -> None:

@@ -8,9 +8,13 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature.actions import read_recorded
+from hangtime.bridge.constraints.leaps import leaps_of
 from hangtime.bridge.constraints.motion_problem import problem_of
+from hangtime.operators.headless.doubts import doubts_about
+from hangtime.operators.solve.adapt import window_doubts
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.data.faults import BeyondPrecision
+from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.worker.pipeline import measure, unfitted
 from hangtime.solver.worker.possible import check_requested
 from hangtime.tests.blender.helpers.jump_scene import FIRST, LAST, drift, landing, pins
@@ -65,6 +69,24 @@ def test_a_stance_turns_about_its_middle(analysed: bpy.types.Object) -> None:
     assert bpy.ops.hangtime.put_back() == {"FINISHED"}
     assert stance.turn == 0.0
     assert all(tuple(row.place) == tuple(row.found_at) for row in rows)
+
+
+def test_a_landing_out_of_reach_is_told_as_the_command_line_tells_it(
+    analysed: bpy.types.Object,
+) -> None:
+    settings = analysed.hangtime
+    recording = read_recorded(analysed, first=FIRST, last=LAST)
+    (usual,) = leaps_of(settings, recording, 1.0)
+    settings.stances["ground 2"].up = 3.0
+    settings.stances["ground 2"].turn = np.radians(720.0)
+    (leap,) = leaps_of(settings, recording, 1.0)
+    assert leap.asked[2] == pytest.approx(usual.recorded[2] + 3.0, abs=1e-5)
+    problem = problem_of(settings, recording)
+    told = window_doubts(settings, recording, problem)
+    assert "ground 2 would be 3.0" in told[0]
+    assert "turned by 720°" in told[1]
+    subject = measure(recording, problem)
+    assert told[0] in doubts_about(problem, None, subject, Origin("jump.bvh"))
 
 
 @pytest.mark.parametrize("number", [float("nan"), float("inf")])

@@ -1,0 +1,225 @@
+"""Wording of what is asked of a motion and is legal, but hardly meant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from math import degrees, tau
+
+import numpy as np
+
+from ...solver.analysis.leaps import Leap
+from ...solver.data.constants import STANDARD_GRAVITY
+from ...solver.data.contacts import Phase, PhaseKind
+from ...solver.data.problem import MotionProblem
+from ...solver.data.requests import AddedMass, PhaseTiming
+from ...solver.data.scene import SceneObject
+from .messages import length
+
+MOST_CARRIED = 1.0  # body masses; a weightlifter moves more, but does not jump with it
+LONGEST_ARM = 2.0  # m from a bone to what it carries
+MOST_GRAVITY, LEAST_GRAVITY = 25.0, 0.2  # m/s², Jupiter's, and that of the largest asteroids
+LONGEST, SHORTEST = 4.0, 0.25  # times a phase's duration
+LARGEST, SMALLEST = 3.0, 0.3  # times a limb
+MOST_FRICTION = 3.0  # of rubber on dry concrete it is 1
+MOST_TORQUE, MOST_SHARE = 1000.0, 5.0  # N·m, of the strongest hips twice; times the recording's
+MOST_SPEED = 30.0  # m/s, of an express train's roof
+MOST_SLACK = 0.1  # m that a contact may miss its place by
+ROUNDING = 1e-6  # rad, of degrees in a recipe
+SAME = 0.01  # m; a leap that differs by less is as recorded
+
+# Of jumps on the Earth, by what is jumped with its speed at the take-off: lengths grow as gravity
+# falls.
+MOST_RISE = 1.5  # m that the body rises in flight, of tumblers; of standing jumps 1.2
+MOST_UP = 1.7  # m, the highest box that was jumped onto from standing
+MOST_DOWN = 2.5  # m, from which trained people land on their feet
+FARTHEST = 3.7  # m, the longest standing long jump
+STANDING = 0.5  # m/s, of a figure that sways
+RUN_UP = 0.5  # s: m more for each m/s of run-up; the longest long jump goes 8.95 m from 11 m/s
+
+
+def request_doubts(
+    problem: MotionProblem, phases: Sequence[Phase], leaps: Sequence[Leap]
+) -> list[str]:
+    """A line for each. phases, leaps: of the recording."""
+    return [
+        *_of_gravity(problem.requests.body.gravity),
+        *_of_loads(problem),
+        *_of_limbs(problem),
+        *_of_timings(problem, phases),
+        *_of_turns(problem),
+        *_of_leaps(problem, leaps),
+        *_of_limits(problem),
+        *_of_speeds(problem.scene),
+    ]
+
+
+def whole_turn_doubts(turns: Iterable[tuple[str, float]]) -> list[str]:
+    """A line for each stance that was turned by more than a whole turn, rad, by its places alone,
+    which do not tell that."""
+    return [
+        f"{name.capitalize()} is turned by {degrees(turn):.0f}°, but whole turns of a stance are "
+        "not jumped; an Orientation in the flight tells which way the body turns"
+        for name, turn in turns
+        if _winds(turn)
+    ]
+
+
+def _of_gravity(gravity: float) -> Iterator[str]:
+    if gravity > MOST_GRAVITY:
+        yield f"Gravity is {gravity:g} m/s², more than on any planet; the Earth's is 9.81"
+    if gravity < LEAST_GRAVITY:
+        yield f"Gravity is {gravity:g} m/s², in which a jump takes minutes; the Moon's is 1.62"
+
+
+def _of_loads(problem: MotionProblem) -> Iterator[str]:
+    loads = problem.requests.body.added
+    mass = problem.requests.body.mass or problem.mass
+    carried = sum(_share(load, mass) for load in loads)
+    if carried > MOST_CARRIED:
+        names = quoted(load.name for load in loads)
+        yield f"{names}: {carried:.3g} times the body's own mass, with which nobody jumps"
+    for load in loads:
+        away = float(np.linalg.norm(load.offset or (0.0, 0.0, 0.0)))
+        if away > LONGEST_ARM:
+            yield f"“{load.name}” is {length(away)} from “{load.bone}”, which carries it"
+
+
+def _share(load: AddedMass, mass: float) -> float:
+    return (load.share or 0.0) if load.mass is None else load.mass / mass
+
+
+def _of_limbs(problem: MotionProblem) -> Iterator[str]:
+    for limb in problem.requests.body.limbs:
+        changes = {"long": limb.length, "heavy": limb.mass}
+        for how, factor in changes.items():
+            if not SMALLEST <= factor <= LARGEST:
+                yield f"“{limb.name}” makes {quoted(limb.bones)} {factor:g} times as {how}"
+    for shape in problem.requests.shapes:
+        if shape.thickness > LARGEST:
+            yield f"“{shape.name}” makes {quoted(shape.bones)} {shape.thickness:g} times as thick"
+
+
+def _of_timings(problem: MotionProblem, phases: Sequence[Phase]) -> Iterator[str]:
+    named = {phase.name: phase for phase in phases}
+    for timing in problem.requests.timings:
+        if (phase := named.get(timing.phase)) is not None:  # else the solve refuses it
+            yield from _of_timing(timing, phase, problem.requests.body.gravity)
+
+
+def _of_timing(timing: PhaseTiming, phase: Phase, gravity: float) -> Iterator[str]:
+    recorded = phase.end - phase.start
+    factor = 1.0 if timing.factor is None else timing.factor
+    seconds = recorded * factor if timing.seconds is None else timing.seconds
+    told = f"“{timing.name}” lets {phase.name} last {seconds:.3g} s (recorded: {recorded:.2f} s)"
+    rise, most = gravity * seconds**2 / 8.0, highest(gravity)
+    if phase.kind is PhaseKind.FLIGHT and seconds > recorded:
+        if rise > most:
+            yield (
+                f"{told}, for which the body must rise by {rise:.3g} m; nobody{there(gravity)} "
+                f"jumps higher than {length(most)}"
+            )
+    elif not SHORTEST <= seconds / recorded <= LONGEST:
+        yield f"{told}, {seconds / recorded:.3g} times as long"
+
+
+def _of_turns(problem: MotionProblem) -> Iterator[str]:
+    for pin in problem.pins:
+        if _winds(pin.turn):
+            yield (
+                f"“{pin.name}” turns {pin.phase} by {degrees(pin.turn):.0f}°, and the body has to "
+                f"make all of these {abs(pin.turn) / tau:.3g} turns on its way there"
+            )
+    for asked in problem.requests.orientations:
+        for angle in (asked.turn, asked.tilt):
+            if abs(angle) > tau - ROUNDING:
+                same = round(degrees(angle - tau * round(angle / tau)))
+                yield f"“{asked.name}” asks for {degrees(angle):.0f}°, which is {same}°"
+
+
+def _winds(turn: float) -> bool:
+    return abs(turn) > tau + ROUNDING
+
+
+def _of_leaps(problem: MotionProblem, leaps: Sequence[Leap]) -> Iterator[str]:
+    gravity = problem.requests.body.gravity
+    for leap in leaps:
+        pins = [pin.name for pin in problem.pins if pin.phase in (leap.take_off, leap.landing)]
+        told = "; ".join(_far(leap, gravity))
+        if told:
+            names = f"{quoted(pins)}: " if pins else ""
+            yield f"{names}{leap.landing} would be {told}"
+
+
+def _far(leap: Leap, gravity: float) -> Iterator[str]:
+    """What of a leap is more than anybody jumps."""
+    scale, nobody = STANDARD_GRAVITY / gravity, f"nobody{there(gravity)}"
+    up, was_up = float(leap.asked[2]), float(leap.recorded[2])
+    far, was_far = (float(np.hypot(*way[:2])) for way in (leap.asked, leap.recorded))
+    most_up, most_down = scale * MOST_UP, scale * MOST_DOWN
+    farthest = scale * (FARTHEST + RUN_UP * leap.run_up) + max(-up, 0.0)
+    if up > max(most_up, was_up + SAME):
+        yield (
+            f"{length(up)} above {leap.take_off}, and {nobody} jumps onto more than "
+            f"{length(most_up)}"
+        )
+    if up < min(-most_down, was_up - SAME):
+        yield (
+            f"{length(-up)} below {leap.take_off}, and {nobody} jumps down more than "
+            f"{length(most_down)}"
+        )
+    if far > max(farthest, was_far + SAME):
+        yield (
+            f"{length(far)} from {leap.take_off}, and {nobody} jumps farther than "
+            f"{length(farthest)} {_from(leap.run_up)}"
+        )
+
+
+def _from(run_up: float) -> str:
+    return f"from a run-up at {run_up:.1f} m/s" if run_up > STANDING else "from standing"
+
+
+def there(gravity: float) -> str:
+    """Which gravity a limit is for, where that is not the Earth's."""
+    return "" if gravity == STANDARD_GRAVITY else " at this gravity"
+
+
+def _of_limits(problem: MotionProblem) -> Iterator[str]:
+    for force in problem.requests.forces:
+        if force.friction is not None and force.friction > MOST_FRICTION:
+            yield (
+                f"“{force.name}” asks for a friction of {force.friction:g}, which no ground has; "
+                "rubber on concrete has 1"
+            )
+    for limit in problem.requests.torques:
+        if limit.bound is not None and limit.bound > MOST_TORQUE:
+            yield f"“{limit.name}” allows {limit.bound:g} N·m, more than anybody has"
+        if limit.share is not None and limit.share > MOST_SHARE:
+            yield (
+                f"“{limit.name}” allows {limit.share:g} times the recording's peak, so it limits "
+                "nothing"
+            )
+    most = highest(problem.requests.body.gravity)
+    for clear in problem.requests.clears:
+        if clear.by > most:
+            yield f"“{clear.name}” asks for a way {length(clear.by)} above “{clear.thing}”"
+    if problem.good_enough > MOST_SLACK:
+        yield f"Contacts may be {length(problem.good_enough)} off their places and are good enough"
+
+
+def _of_speeds(scene: Sequence[SceneObject]) -> Iterator[str]:
+    for thing in scene:
+        if thing.steady is None:
+            continue
+        speed = max(float(np.linalg.norm(v)) for v in (thing.steady.velocity, thing.steady.belt))
+        if speed > MOST_SPEED:
+            yield f"“{thing.name}” moves at {speed:g} m/s, from which and to which nobody jumps"
+
+
+def highest(gravity: float) -> float:
+    """M that a body can rise."""
+    return MOST_RISE * STANDARD_GRAVITY / gravity
+
+
+def quoted(names: Iterable[str]) -> str:
+    """The names in quotation marks, one after the other."""
+    return ", ".join(f"“{name}”" for name in names)
