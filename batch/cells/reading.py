@@ -16,13 +16,11 @@ from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.reports.recording import Origin
 from ...solver.doctor.examination.repair import (
-    check_trim,
     filled,
     grounded,
-    left_after,
+    left_of,
     mended,
     placed,
-    trimmed,
     turned,
 )
 from ...solver.doctor.repairs import Repairs
@@ -77,18 +75,17 @@ def read_clip(
     recording = _by_depth(to_recording(replace(clip, name=path.stem), metres, axis))
     mend = repairs or Repairs()
     recording = filled(recording, mend.missing)
-    check_trim(mend, len(recording.frames))
+    whole = recording.ends
     still = replace(mend, drift=Repairs().drift, rise=0.0)
     if still != Repairs():
         recording = placed(turned(recording, still), still)
     check_scale(recording, problem, mend.scale)
     recording = _about(recording, problem, 1.0 / (clip.frame_time * mend.time_scale))
+    recording, problem = left_of(recording, problem, mend, whole)
     count = bind_frames(recording) if problem.frames is None else 0
     if count:
         origin = replace(origin, bind_frames=count)
-        problem = replace(problem, frames=left_after(recording, count, repairs))
-    elif problem.frames is None and mend.trims:
-        recording = trimmed(recording, mend)
+        problem = replace(problem, frames=recording.part(slice(count, None)).ends)
     recording = placed(
         mended(recording, mend, problem.bones), Repairs(drift=mend.drift, rise=mend.rise)
     )

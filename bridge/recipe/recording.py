@@ -4,8 +4,8 @@
 up = "Y"                        # the axis, as it was read, that is to become Z; "-X" ...
 missing = { 57 = 4, 103 = -36 } # after frame 57 four frames are missing: they are put in; after
                                 # frame 103 thirty-six are too many: they are taken out
-trim = 1                        # frames left out at the beginning
-trim_end = 60                   # frames left out at the end
+trim = 1                        # frames left out at the beginning of the whole clip
+trim_end = 60                   # and at its end; those that `frames` names are of what is left
 repair = ["full turns", "held frames", "exchanged legs", "exchanged arms", "flips",
           "spikes", "bone lengths", "noise", "floating"]
 time_scale = 0.8                # durations times this: played 1.25 times too slowly

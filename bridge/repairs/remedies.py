@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 
 from ...solver.doctor.finding import FindingKind
-from ...solver.doctor.stretch import CUTTING, longest_stretch
+from ...solver.doctor.stretch import CUTTING, cuts, longest_stretch
 from ..accessors import present, shown_range
 from ..armature.actions import recorded_action
 from ..properties.settings import settings_of
@@ -33,8 +33,9 @@ def use_remedy(
 
 
 def _leave_out(armature: bpy.types.Object, row: HangtimeFinding, *, used: bool) -> None:
-    """Frames at the ends, by the frame range: where the artist chose some of those that are kept,
-    these stay. A rest pose stays left out where what is after it is let in again."""
+    """Frames at the ends, by the frame range: of one that the artist chose the longest part without
+    a fault is kept, else of all frames. A rest pose stays left out where what is after it is let in
+    again."""
     settings = settings_of(armature)
     first, last = map(int, shown_range(armature, present(recorded_action(armature))))
     start, end = first, last
@@ -43,14 +44,15 @@ def _leave_out(armature: bpy.types.Object, row: HangtimeFinding, *, used: bool) 
     cutting = [each for each in map(finding_of, findings(settings)) if each.kind in CUTTING]
     rest = [each for each in cutting if each.kind is FindingKind.BIND_POSE]
     is_rest = row.name == FindingKind.BIND_POSE.value
-    after_rest, after_all = (longest_stretch((first, last), each) for each in (rest, cutting))
     if used:
-        kept = after_rest if is_rest else after_all
-        inside = max(start, round(kept[0])), min(end, round(kept[1]))
-        start, end = inside if inside[0] < inside[1] else map(round, kept)
+        spoilt = rest if is_rest else cutting
+        inside = longest_stretch((start, end), spoilt)
+        kept = inside if inside[0] < inside[1] else longest_stretch((first, last), spoilt)
+        start, end = map(round, kept)
     else:
-        left = (first, last) if is_rest else after_rest
-        start = round(left[0]) if start in (after_rest[0], after_all[0]) else start
-        end = round(left[1]) if end in (after_rest[1], after_all[1]) else end
+        left = (first, last) if is_rest else longest_stretch((first, last), rest)
+        befores, afters = zip(*(cut for each in cutting for cut in cuts(each)), strict=True)
+        start = round(left[0]) if start in afters else start
+        end = round(left[1]) if end in befores else end
     settings.first_frame, settings.last_frame = start, end
     settings.use_range = (start, end) != (first, last)

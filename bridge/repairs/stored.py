@@ -35,8 +35,9 @@ def applied(settings: HangtimeSettings) -> Repairs:
 
 
 def repairs_to_write(settings: HangtimeSettings) -> Repairs | None:
-    """The repairs for a recipe; None where there are none."""
-    return applied(settings) if settings.repairs else None
+    """The repairs for a recipe; None where there are none. What is left out at both ends the range
+    of frames says."""
+    return replace(applied(settings), trim=0, trim_end=0) if settings.repairs else None
 
 
 def unreadable(settings: HangtimeSettings) -> bool:

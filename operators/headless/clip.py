@@ -14,8 +14,9 @@ from ...solver.data.faults import ClipNotOpened, MirroredInBlender, NoArmature, 
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.reports.recording import ChosenTake, Origin
-from ...solver.doctor.examination.repair import check_trim, left_after, trimmed
+from ...solver.doctor.examination.repair import left_of
 from ...solver.doctor.repairs import Repairs
+from ...solver.doctor.stretch import Span
 from ...solver.skeleton.bind_pose import bind_frames
 from ...solver.worker.pipeline import Subject, measure
 from ...solver.worker.stated_scale import check_scale
@@ -75,13 +76,14 @@ class LoadedClip:
         return Path(self.origin.clip).suffix.lower() == SCENE
 
 
-def read_clip(clip: Clip, problem: MotionProblem) -> tuple[Recording, Origin]:
-    """Imports a clip as `load` does, and reads the problem's frames of it, as they are.
+def read_clip(clip: Clip, problem: MotionProblem) -> tuple[Recording, Span, Origin]:
+    """Imports a clip as `load` does, and reads the problem's frames of it, as they are; with the
+    first and last frame of the whole clip.
 
     Raises every Fault that a clip can have.
     """
     armature, origin = _import(clip)
-    return chosen_frames(_read(armature, problem), problem), origin
+    return chosen_frames(_read(armature, problem), problem), _ends(armature), origin
 
 
 def load(
@@ -100,15 +102,13 @@ def load(
             repair(armature, repairs)
     with stages.stage("Finding contacts"):
         recording = _read(armature, problem)
-        count = bind_frames(recording) if problem.frames is None else 0
         if repairs is not None:
-            check_trim(repairs, _frame_count(armature))
+            recording, problem = left_of(recording, problem, repairs, _ends(armature))
             check_scale(recording, problem, repairs.scale)
+        count = bind_frames(recording) if problem.frames is None else 0
         if count:
             origin = replace(origin, bind_frames=count)
-            problem = replace(problem, frames=left_after(recording, count, repairs))
-        elif repairs is not None and problem.frames is None and repairs.trims:
-            recording = trimmed(recording, repairs)
+            problem = replace(problem, frames=recording.part(slice(count, None)).ends)
         if repairs is not None:
             problem = replace(problem, mend=repairs.mend, drift=repairs.drift, rise=repairs.rise)
         if problem.mirrored:
@@ -209,12 +209,12 @@ def _skin(armature: bpy.types.Object, recording: Recording) -> SkinReading:
     return complete(read_skin(armature, recording.frames))
 
 
-def _frame_count(armature: bpy.types.Object) -> int:
-    """How many frames the whole recording has."""
+def _ends(armature: bpy.types.Object) -> Span:
+    """First and last frame of the whole recording."""
     from ...bridge.accessors import current_action, present, shown_range
 
     start, end = shown_range(armature, present(current_action(armature)))
-    return floor(end) - ceil(start) + 1
+    return float(ceil(start)), float(floor(end))
 
 
 def _recorded_frames(

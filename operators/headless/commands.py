@@ -235,11 +235,11 @@ def _ask_about(problem: MotionProblem, loaded: LoadedClip, repairs: Repairs | No
 def doctor(options: argparse.Namespace) -> None:
     """Prints what is wrong with a clip; leaves a recipe where asked. Raises Fault."""
     clip, problem = _clip(options, None), overridden(MotionProblem(), options)
-    diagnosis, origin = examined(clip, problem, options.mass)
-    print(told(diagnosis, origin, as_json=options.json), end="")
+    examination = examined(clip, problem, options.mass)
+    print(told(examination, as_json=options.json), end="")
     target: Path | None = options.write_recipe
     if target is not None:
-        write_recipe_of(diagnosis, clip, target)
+        write_recipe_of(examination, clip, target)
         print(f"\nWritten:\n  {target}", file=sys.stderr if options.json else sys.stdout)
 
 

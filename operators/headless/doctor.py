@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,8 @@ from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
 from ...solver.doctor.examination.diagnose import Diagnosis, diagnose
 from ...solver.doctor.finding import Finding
+from ...solver.doctor.repairs import filled_frame
+from ...solver.doctor.stretch import Span
 from ..words.analysis_text import relative
 from ..words.doctor_text import diagnosis_text, finding_sentence, rounded
 from ..words.doubt_text import file_doubts
@@ -20,15 +23,28 @@ from .clip import Clip, read_clip
 from .outbox import not_writable
 
 
-def examined(clip: Clip, problem: MotionProblem, mass: float | None) -> tuple[Diagnosis, Origin]:
-    """The diagnosis of a clip, and how its file was read. mass: kg, None where the artist stated
-    none. Raises Fault."""
-    recording, origin = read_clip(clip, problem)
-    return diagnose(recording, problem.bones, mass), origin
+@dataclass(frozen=True)
+class Examination:
+    """The diagnosis of a clip, and how its file was read.
+
+    frames: first and last one that were examined; None where none were chosen.
+    """
+
+    diagnosis: Diagnosis
+    origin: Origin
+    frames: Span | None
 
 
-def told(diagnosis: Diagnosis, origin: Origin, *, as_json: bool) -> str:
+def examined(clip: Clip, problem: MotionProblem, mass: float | None) -> Examination:
+    """mass: kg, None where the artist stated none. Raises Fault."""
+    recording, whole, origin = read_clip(clip, problem)
+    diagnosis = diagnose(recording, problem.bones, mass).counted_in(whole, recording.ends)
+    return Examination(diagnosis, origin, problem.frames and recording.ends)
+
+
+def told(examination: Examination, *, as_json: bool) -> str:
     """The diagnosis, what was guessed of the file, and doubts about it, as text."""
+    diagnosis, origin = examination.diagnosis, examination.origin
     doubts, guessed = file_doubts(origin), guesses(origin)
     if not as_json:
         notes = [*doubts, f"guessed: {' and '.join(guessed)}"] if guessed else doubts
@@ -44,9 +60,14 @@ def told(diagnosis: Diagnosis, origin: Origin, *, as_json: bool) -> str:
     return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 
 
-def write_recipe_of(diagnosis: Diagnosis, clip: Clip, target: Path) -> None:
+def write_recipe_of(examination: Examination, clip: Clip, target: Path) -> None:
     """A new recipe with the repairs. Raises OutputNotWritable."""
-    top = {"clip": relative(clip.path, target), "mass": diagnosis.mass and round(diagnosis.mass)}
+    diagnosis = examination.diagnosis
+    top = {
+        "clip": relative(clip.path, target),
+        "frames": examination.frames and _kept(examination.frames, diagnosis),
+        "mass": diagnosis.mass and round(diagnosis.mass),
+    }
     repairs = RECORDING.write(rounded(diagnosis.repairs))
     text = "\n".join([entries(top), *sections(RECORDING.header, repairs)])
     try:
@@ -54,6 +75,13 @@ def write_recipe_of(diagnosis: Diagnosis, clip: Clip, target: Path) -> None:
             file.write(text)
     except OSError as error:
         raise not_writable(target, error) from error
+
+
+def _kept(frames: Span, diagnosis: Diagnosis) -> Span:
+    """Of chosen frames those that all remedies leave, counted with those that are put in."""
+    first, last = max(frames[0], diagnosis.kept[0]), min(frames[1], diagnosis.kept[1])
+    missing = diagnosis.repairs.missing
+    return filled_frame(first, missing), filled_frame(last, missing)
 
 
 def _content(finding: Finding) -> dict[str, Any]:

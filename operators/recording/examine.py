@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import bpy
 
+from ...bridge.accessors import present, shown_range
+from ...bridge.armature.actions import recorded_action
 from ...bridge.constraints.bone_mapping import chosen_parts, find_parts, missing_parts
 from ...bridge.properties.settings import scene_settings, settings_of
 from ...bridge.repairs.stored import (
@@ -75,7 +77,9 @@ class ExamineOperator(TaskOperator, bpy.types.Operator):
         job = shared().ask(RequestKind.EXAMINE, recording, problem, repairs)
         answer = yield from answered(job, Examined)
         yield None
-        write_diagnosis(armature, answer.diagnosis, answer.feet)
+        whole = shown_range(armature, present(recorded_action(armature)))
+        diagnosis = answer.diagnosis.counted_in(whole, recording.ends)
+        write_diagnosis(armature, diagnosis, answer.feet)
         scene_settings(context.scene).armature = armature
         redraw("VIEW_3D", "DOPESHEET_EDITOR")
         wrong = [

@@ -58,8 +58,8 @@ class Repairs:
 
     up: what becomes Z. missing: frames that are put in, or taken out; all others of a recipe
     count with them.
-    trim, trim_end: frames left out at the beginning and at the end. mend: of the poses.
-    time_scale, scale: factors of durations and of lengths. drift and rise: m/s, along the
+    trim, trim_end: frames left out at the beginning and at the end of the whole clip. mend: of the
+    poses. time_scale, scale: factors of durations and of lengths. drift and rise: m/s, along the
     floor and upwards, that are taken out, and floor: m, the height that becomes 0; all after the
     factors.
     """

@@ -66,3 +66,15 @@ def begun_at_rest(clip: Path, folder: Path, *, ended: bool = False) -> Path:
     count = f"Frames: {len(frames)}"
     copy.write_text("\n".join([f"{text}MOTION", count, time, *frames, ""]))
     return copy
+
+
+def joined_after(clip: Path, after: int, step: float, folder: Path) -> Path:
+    """A copy of a BVH file that goes on elsewhere after a frame (the first is 1). step: in its
+    units, along X."""
+    text, motion = clip.read_text().split("MOTION\n")
+    count, time, *frames = motion.splitlines()
+    rows = [frame.split() for frame in frames]
+    moved = [[str(float(x) + step * (i >= after)), *row] for i, (x, *row) in enumerate(rows)]
+    copy = folder / "joined_after.bvh"
+    copy.write_text("\n".join([f"{text}MOTION", count, time, *map(" ".join, moved), ""]))
+    return copy

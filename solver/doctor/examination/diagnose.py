@@ -71,6 +71,18 @@ class Diagnosis:
         inside = tuple(gap for gap in every.missing if first <= gap.after < last)
         return replace(every, missing=inside)
 
+    def counted_in(self, whole: Span, examined: Span) -> Diagnosis:
+        """With the frames that are left out counted from both ends of the whole clip, of which some
+        were examined. Both: first and last frame."""
+        before, after = round(examined[0] - whole[0]), round(whole[1] - examined[1])
+
+        def counted(cut: Repairs) -> Repairs:
+            first, last = cut.trim and before + cut.trim, cut.trim_end and after + cut.trim_end
+            return replace(cut, trim=first, trim_end=last)
+
+        findings = (replace(f, remedy=f.remedy and counted(f.remedy)) for f in self.findings)
+        return replace(self, findings=tuple(findings))
+
 
 @computable()
 def diagnose(

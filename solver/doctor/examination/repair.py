@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...analysis.take import require_inside
 from ...arrays import FloatArray
 from ...data.faults import NothingLeft
 from ...data.problem import Mend, MotionProblem
@@ -25,6 +26,7 @@ from ..local_poses import LocalPoses
 from ..noise import smoothed
 from ..repairs import MissingFrames, Repairs, check_missing
 from ..stance.floating import held_to_the_ground
+from ..stretch import Span
 from ..upright import turn_upright
 
 
@@ -178,16 +180,23 @@ def trimmed(recording: Recording, repairs: Repairs) -> Recording:
     return replace(kept, times=kept.times - kept.times[:1])
 
 
-def left_after(
-    recording: Recording, held: int, repairs: Repairs | None = None
-) -> tuple[float, float]:
-    """First and last frame of what is left where as many frames at the beginning hold the rest
-    pose, and others are left out; of no repairs none are. Raises NothingLeft."""
-    repairs, count = repairs or Repairs(), len(recording.frames)
-    both = replace(repairs, trim=max(held, repairs.trim))
-    check_trim(both, count)
-    kept = recording.frames[both.trim : count - both.trim_end]
-    return float(kept[0]), float(kept[-1])
+def left_of(
+    recording: Recording, problem: MotionProblem, repairs: Repairs, whole: Span
+) -> tuple[Recording, MotionProblem]:
+    """A recording, and the frames that a problem asks for, without those that are left out of the
+    whole clip, whose first and last frame these are.
+
+    Raises NothingLeft, and OutsideKeys where none that is asked for is left.
+    """
+    check_trim(repairs, round(whole[1] - whole[0]) + 1)
+    if not repairs.trims:
+        return recording, problem
+    first, last = whole[0] + repairs.trim, whole[1] - repairs.trim_end
+    if problem.frames is not None:
+        require_inside(problem.frames, recording.name, (first, last))
+        asked = max(first, problem.frames[0]), min(last, problem.frames[1])
+        problem = replace(problem, frames=asked)
+    return recording.window(first, last), problem
 
 
 def mended(

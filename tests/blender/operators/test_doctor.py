@@ -16,11 +16,12 @@ from hangtime.bridge.recipe.problem import locate, parse_recipe
 from hangtime.operators.headless.cli import main
 from hangtime.operators.headless.clip import Clip, load
 from hangtime.operators.headless.stages import Stages
-from hangtime.solver.data.faults import NotBetweenFrames, NothingLeft, OddScale
+from hangtime.solver.data.faults import NotBetweenFrames, NothingLeft, OddScale, OutsideKeys
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis
 from hangtime.tests.helpers.clips import (
     begun_at_rest,
+    joined_after,
     mocap_path,
     with_frames_repeated,
     without_frames,
@@ -138,7 +139,7 @@ def test_frames_after_the_last_one_are_not_put_in_here_either() -> None:
 
 @pytest.mark.parametrize("frames", [None, (100.0, 290.0)])
 def test_a_recording_of_which_nothing_is_left_is_refused_here_and_without_blender(frames) -> None:
-    """Where frames are named, too, which leave the trim without a meaning."""
+    """Where frames are named, too."""
     repairs, problem = Repairs(trim=100_000), MotionProblem(frames=frames)
     with pytest.raises(NothingLeft) as told:
         load(Clip(mocap_path(CLIP)), problem, Stages(StringIO()), repairs)
@@ -161,6 +162,45 @@ def test_frames_at_both_ends_are_left_out_as_without_blender(tmp_path: Path) -> 
         ):
             ends = asked or (recording.frames[0], recording.frames[-1])
             assert ends == (6.0, count - 30.0)
+
+
+@pytest.mark.slow
+def test_of_the_frames_that_are_named_those_count_that_are_left() -> None:
+    """Of the whole clip, 336 frames, so many are left out; they tell nothing of the others."""
+    repairs = Repairs(trim=120, trim_end=30)
+    for asked, left in [((100.0, 290.0), (121.0, 290.0)), ((150.0, 400.0), (150.0, 306.0))]:
+        problem = MotionProblem(frames=asked)
+        plain = read_clip(mocap_path(CLIP), problem, repairs)
+        here = load(Clip(mocap_path(CLIP)), problem, Stages(StringIO()), repairs)
+        assert plain.problem.frames == here.problem.frames == left
+        assert plain.recording.frames[0] >= 121.0
+        assert plain.recording.frames[-1] <= 306.0
+    problem = MotionProblem(frames=(10.0, 100.0))
+    with pytest.raises(OutsideKeys, check=lambda fault: (fault.first, fault.last) == (121, 306)):
+        read_clip(mocap_path(CLIP), problem, repairs)
+    with pytest.raises(OutsideKeys, check=lambda fault: (fault.first, fault.last) == (121, 306)):
+        load(Clip(mocap_path(CLIP)), problem, Stages(StringIO()), repairs)
+
+
+@pytest.mark.parametrize(
+    ("chosen", "remedy", "left"),
+    [
+        (("--last", "290"), "trim_end = 96", (1.0, 240.0)),
+        (("--first", "200"), "trim = 240", (241.0, 336.0)),
+    ],
+)
+def test_what_is_left_out_of_a_range_is_counted_in_the_whole_clip(
+    chosen, remedy, left, tmp_path: Path, capsys
+) -> None:
+    """As a recipe counts it; the leap at frame 240 stayed in."""
+    clip, recipe = joined_after(mocap_path(CLIP), 240, 7.0, tmp_path), tmp_path / "mend.toml"
+    options = ("--unit", "0.0564", "--write-recipe", str(recipe))
+    assert main(["doctor", str(clip), *chosen, *options]) == 0
+    assert f"remedy: {remedy}\n" in capsys.readouterr().out
+    written = parse_recipe(recipe.read_text(encoding="utf-8"))
+    assert written.problem.frames == left
+    read = read_clip(clip, MotionProblem(), written.repairs, unit=0.0564).recording
+    assert read.ends == left
 
 
 @pytest.mark.slow

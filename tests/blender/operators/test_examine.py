@@ -495,9 +495,13 @@ def test_of_a_clip_that_was_joined_the_longest_part_is_kept(joined) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("chosen", "left"),
-    [((100, 290), (100, JOINED - 1)), ((JOINED + 5, 320), (JOINED + 5, 320))],
+    [
+        ((100, 290), (100, JOINED - 1)),
+        ((JOINED - 20, 320), (JOINED, 320)),
+        ((JOINED + 5, 320), (JOINED + 5, 320)),
+    ],
 )
-def test_of_the_frames_that_were_chosen_those_stay_that_can(joined, chosen, left) -> None:
+def test_of_the_frames_that_were_chosen_the_longest_part_stays(joined, chosen, left) -> None:
     """A range on the other side needs no repair."""
     settings = joined.hangtime
     settings.use_range = True
