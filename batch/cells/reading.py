@@ -24,6 +24,7 @@ from ...solver.doctor.examination.repair import (
     turned,
 )
 from ...solver.doctor.repairs import Repairs
+from ...solver.doctor.stretch import Span
 from ...solver.skeleton.bind_pose import bind_frames
 from ...solver.worker.stated_scale import check_scale
 
@@ -35,7 +36,7 @@ class ReadClip:
     """A clip's recording, repaired, and how its file was read.
 
     problem: as it was asked for, after a bind pose. unit: m per unit of the file. up: its axis that
-    points up.
+    points up. whole: first and last frame of all that the file holds.
     """
 
     recording: Recording
@@ -43,6 +44,7 @@ class ReadClip:
     problem: MotionProblem
     unit: float
     up: UpAxis
+    whole: Span
 
 
 def read_file(path: Path, rate: float | None) -> MotionClip:
@@ -90,7 +92,7 @@ def read_clip(
         mended(recording, mend, problem.bones), Repairs(drift=mend.drift, rise=mend.rise)
     )
     recording = grounded(recording, mend.mend, problem.bones)
-    return ReadClip(recording, origin, problem, metres, axis)
+    return ReadClip(recording, origin, problem, metres, axis, whole)
 
 
 def _by_depth(recording: Recording) -> Recording:

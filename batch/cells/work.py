@@ -29,6 +29,7 @@ from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
 from ...solver.data.requests import Requests
 from ...solver.doctor.examination.diagnose import diagnose
+from ...solver.doctor.stretch import Span
 from ...solver.results.report import fit_quality
 from ...solver.results.unseen_support import refuse_unseen
 from ...solver.worker.pipeline import Subject, measure, no_fit, solve
@@ -62,11 +63,13 @@ class Done:
 
 @dataclass(frozen=True)
 class _Loaded:
-    """A clip that was read and analysed. scene: where Blender holds it."""
+    """A clip that was read and analysed. whole: first and last frame of all of it. scene: where
+    Blender holds it."""
 
     subject: Subject
     origin: Origin
     problem: MotionProblem
+    whole: Span
     scene: LoadedClip | None = None
 
 
@@ -121,12 +124,13 @@ def check_cell(
     loaded = _load(settings, plan, recipe, fits, stages)
     recording = loaded.subject.analysis.performance.recording
     with stages.stage("Diagnosing"):
-        diagnosis = diagnose(recording, loaded.problem.bones, recipe.problem.mass)
+        found = diagnose(recording, loaded.problem.bones, recipe.problem.mass)
+        diagnosis = found.counted_in(loaded.whole, recording.ends)
     outbox.write_text(DIAGNOSIS, diagnosis_text(diagnosis))
-    found = [each for each in diagnosis.findings if not each.kind.note]
+    faults = [each for each in diagnosis.findings if not each.kind.note]
     fitted = fits.fit(loaded.subject, stages)
-    told = tuple(finding_sentence(each) for each in found)
-    counted = {"findings": float(len(found))}
+    told = tuple(finding_sentence(each) for each in faults)
+    counted = {"findings": float(len(faults))}
     if not fitted.solved:
         return Done(told, counted, no_fit(loaded.subject, fitted, examined=True))
     refuse_unseen(loaded.subject.problem, fitted)
@@ -189,7 +193,7 @@ def _loaded(
             take=settings.take,
         )
         scene = load(clip, problem, stages, recipe.repairs)
-        return _Loaded(scene.subject, scene.origin, scene.problem, scene)
+        return _Loaded(scene.subject, scene.origin, scene.problem, scene.whole, scene)
     # Neither pins nor requests tell what was recorded (as in worker/service.py); nor does the
     # folder that a clip lies in, which is another for each cell where clips are sent to workers.
     asked = replace(problem, pins=(), requests=Requests())
@@ -197,7 +201,7 @@ def _loaded(
     with stages.stage("Finding contacts"):
         subject, read = fits.analysed(key, partial(_analysed, settings, plan, recipe))
     problem = replace(problem, frames=read.problem.frames)
-    return _Loaded(subject.asked(problem), read.origin, problem)
+    return _Loaded(subject.asked(problem), read.origin, problem, read.whole)
 
 
 def _analysed(settings: BatchSettings, plan: CellPlan, recipe: Recipe) -> tuple[Subject, ReadClip]:

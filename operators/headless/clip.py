@@ -61,7 +61,7 @@ class LoadedClip:
     """An imported clip: its armature and its analysis.
 
     problem: as it was asked for, in the recording's own lengths, after a bind pose. skin: of the
-    meshes that the armature deforms.
+    meshes that the armature deforms. whole: first and last frame of the whole recording.
     """
 
     armature: bpy.types.Object
@@ -69,6 +69,7 @@ class LoadedClip:
     problem: MotionProblem
     subject: Subject
     skin: SkinReading
+    whole: Span
 
     @property
     def in_scene(self) -> bool:
@@ -101,9 +102,9 @@ def load(
 
             repair(armature, repairs)
     with stages.stage("Finding contacts"):
-        recording = _read(armature, problem)
+        recording, whole = _read(armature, problem), _ends(armature)
         if repairs is not None:
-            recording, problem = left_of(recording, problem, repairs, _ends(armature))
+            recording, problem = left_of(recording, problem, repairs, whole)
             check_scale(recording, problem, repairs.scale)
         count = bind_frames(recording) if problem.frames is None else 0
         if count:
@@ -115,7 +116,7 @@ def load(
             raise MirroredInBlender
         read = _skin(armature, recording)
         subject = measure(recording, replace(problem, skin=read.skin))
-    return LoadedClip(armature, origin, problem, subject, read)
+    return LoadedClip(armature, origin, problem, subject, read, whole)
 
 
 def _import(clip: Clip) -> tuple[bpy.types.Object, Origin]:

@@ -28,7 +28,7 @@ from hangtime.bridge.formats.bvh import read_bvh
 from hangtime.solver.data.faults import OutputNotWritable
 from hangtime.solver.fitting.fit import Fit
 from hangtime.solver.worker.unpickling import Unreadable, unpickled
-from hangtime.tests.helpers.clips import mocap_path
+from hangtime.tests.helpers.clips import joined_after, mocap_path
 
 RECIPE = """
 frames = [20, 190]
@@ -269,6 +269,18 @@ def test_the_command_line_runs_a_batch_and_goes_on_with_it(
     results = [read_result(tmp_path / "out", c.cell) for c in cells(tmp_path / "out")]
     assert [r.figures["findings"] for r in results if r is not None] == [0.0]
     assert len(list((tmp_path / "out" / CELLS).iterdir())) == 3
+
+
+@pytest.mark.slow
+def test_what_a_check_leaves_out_is_counted_in_the_whole_clip(tmp_path: Path) -> None:
+    recipe, clip = tmp_path / "recipe.toml", mocap_path("hop_01_01.bvh")
+    recipe.write_text("frames = [60, 190]\n")
+    clip = joined_after(clip, 90, 7.0, tmp_path)
+    plan(Asked(BatchSettings(check=True), [str(clip)], [str(recipe)]), tmp_path / "out")
+    cell = cells(tmp_path / "out")[0].cell
+    run_cell(tmp_path / "out", cell)
+    told = (cell_folder(tmp_path / "out", cell) / work.DIAGNOSIS).read_text(encoding="utf-8")
+    assert "remedy: trim = 90\n" in told
 
 
 @pytest.mark.parametrize(
