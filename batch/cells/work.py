@@ -12,6 +12,7 @@ from ...bridge.recipe.export import ExportOptions
 from ...bridge.recipe.keys import KeyOptions, require_every_frame
 from ...bridge.recipe.objects import placed_objects
 from ...bridge.recipe.problem import Recipe
+from ...bridge.recipe.recording import FileReading
 from ...bridge.recipe.result import ResultOptions, require_return_after
 from ...bridge.rows.choices import FileFormat
 from ...operators.headless.clip import Clip, LoadedClip, load
@@ -181,37 +182,48 @@ def _require_unchanged(plan: CellPlan) -> None:
 def _loaded(
     settings: BatchSettings, plan: CellPlan, recipe: Recipe, fits: SharedFits, stages: Stages
 ) -> _Loaded:
-    problem = recipe.problem
+    problem, stated = recipe.problem, _stated(settings, recipe)
     if needs_blender(plan.clip, settings.outputs):
         require_blender(plan.clip)
         clip = Clip(
             Path(plan.clip),
-            settings.unit,
-            settings.up,
-            settings.rate,
-            armature=settings.armature,
-            take=settings.take,
+            stated.unit,
+            stated.up,
+            stated.rate,
+            armature=stated.armature,
+            take=stated.take,
         )
         scene = load(clip, problem, stages, recipe.repairs)
         return _Loaded(scene.subject, scene.origin, scene.problem, scene.whole, scene)
     # Neither pins nor requests tell what was recorded (as in worker/service.py); nor does the
     # folder that a clip lies in, which is another for each cell where clips are sent to workers.
     asked = replace(problem, pins=(), requests=Requests())
-    key = digest_of(Path(plan.clip).name, plan.clip_sha256, settings, recipe.repairs, asked)
+    key = digest_of(Path(plan.clip).name, plan.clip_sha256, stated, recipe.repairs, asked)
     with stages.stage("Finding contacts"):
-        subject, read = fits.analysed(key, partial(_analysed, settings, plan, recipe))
+        subject, read = fits.analysed(key, partial(_analysed, stated, plan, recipe))
     problem = replace(problem, frames=read.problem.frames)
     return _Loaded(subject.asked(problem), read.origin, problem, read.whole)
 
 
-def _analysed(settings: BatchSettings, plan: CellPlan, recipe: Recipe) -> tuple[Subject, ReadClip]:
+def _stated(settings: BatchSettings, recipe: Recipe) -> FileReading:
+    """How a clip is read as the command says, else as the recipe does."""
+    return FileReading(
+        recipe.file.unit if settings.unit is None else settings.unit,
+        settings.up or recipe.file.up,
+        recipe.file.rate if settings.rate is None else settings.rate,
+        armature=settings.armature or recipe.file.armature,
+        take=settings.take or recipe.file.take,
+    )
+
+
+def _analysed(stated: FileReading, plan: CellPlan, recipe: Recipe) -> tuple[Subject, ReadClip]:
     read = read_clip(
         Path(plan.clip),
         recipe.problem,
         recipe.repairs,
-        unit=settings.unit,
-        up=settings.up,
-        rate=settings.rate,
+        unit=stated.unit,
+        up=stated.up,
+        rate=stated.rate,
     )
     return measure(read.recording, read.problem), read
 

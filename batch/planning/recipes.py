@@ -12,6 +12,7 @@ from typing import Any
 
 from ...bridge.recipe.objects import object_files
 from ...bridge.recipe.problem import Recipe, read_recipe_text, recipe_of
+from ...bridge.recipe.recording import FILE
 from ...bridge.recipe_syntax.source_lines import KeyPath
 from ...bridge.recipe_syntax.table import Source
 from ...bridge.recipe_syntax.values import recipe_values
@@ -20,6 +21,9 @@ from ..records.faults import WrongPlan
 from ..records.manifest import Value
 from .ranges import HEADER, Combination, ValueRange, combination, count_of, find_ranges, variants
 
+OWN_SKELETON = (
+    '"asf" counts for single clips only; in a batch put the skeleton beside its AMC files'
+)
 OF_PLANNING = (HEADER, "clip")  # keys that say nothing of the motion
 
 
@@ -80,7 +84,10 @@ class VariedRecipe:
 
     def recipe(self, resolved: dict[str, Any]) -> Recipe:
         """What resolved values ask for. Raises BadRecipe."""
-        return recipe_of(resolved, self.source) if self.path else Recipe(MotionProblem())
+        recipe = recipe_of(resolved, self.source) if self.path else Recipe(MotionProblem())
+        if recipe.file.asf is not None:
+            self.source.refuse((FILE.header, "asf"), OWN_SKELETON)
+        return recipe
 
     def sha256(self, resolved: dict[str, Any]) -> str:
         """Of resolved values and of the files that they name; comments and layout do not count."""

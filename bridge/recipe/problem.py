@@ -38,6 +38,8 @@ markers = "action"              # where limbs come down and go up; or "timeline"
 contact_channels = true         # a property of the armature for each limb, 1 while it touches
 [loop]                          # the motion repeats: its end meets its start, solved so
 root = "hips"                   # carry the travel; or "in place", or "root bone"
+[file]                          # how the clip is read: the keys are in recording.py
+unit = 0.0254                   # m per unit of length
 [recording]                     # its repairs: the keys are in recording.py
 repair = ["spikes"]
 [keys]                          # of the adapted frames
@@ -51,7 +53,7 @@ Objects of the scene are in objects.py, and what may be asked for beside in requ
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -69,6 +71,7 @@ from ...solver.data.faults import (
     NotBetweenFrames,
     NothingLeft,
     OddScale,
+    OptionNotTaken,
     SceneFault,
     UnknownContactName,
     UnknownReductionBone,
@@ -88,13 +91,13 @@ from .loop import LOOP, LoopOptions
 from .object_texts import object_text
 from .objects import HEADER as OBJECT
 from .objects import Under, default_name, object_files, read_objects
-from .recording import RECORDING
+from .recording import FILE, RECORDING, FileReading
 from .requests import NAMED, REQUEST_KEYS, read_requests, request_texts
 from .result import RESULT, ResultOptions
 
 OWN_KEYS = (
     *("clip", "frames", "mass", "height", "mass_table", "bones", "pin", "contact"),
-    *("recording", "keys", "loop", "export"),
+    *("file", "recording", "keys", "loop", "export"),
 )
 TOP_KEYS = (
     *OWN_KEYS,
@@ -109,7 +112,7 @@ TOP_KEYS = (
 # What a text of the .blend file that the armature points to may hold; the panels have the rest.
 TEXT_KEYS = (*REQUEST_KEYS, RESULT.header, KEYS.header, LOOP.header)
 INSTEAD = {  # of keys that are not among these
-    "clip": "the recording is the armature's action",
+    **dict.fromkeys(("clip", FILE.header), "the recording is the armature's action"),
     "frames": "the panel Recording has the frame range",
     RECORDING.header: "the panel Recording has the repairs",
     **dict.fromkeys(("mass", "height"), "the panel Character has it"),
@@ -138,8 +141,9 @@ PARTS = (
 class Recipe:
     """Parsed recipe. clip: a path as written, relative to the recipe; None where not given.
 
-    under: objects of which the analysis is to tell the places. repairs: of the recording. result,
-    keys, loop, export: None where not given. meshes: files that objects were read from.
+    file: how the clip is read. under: objects of which the analysis is to tell the places. repairs:
+    of the recording. result, keys, loop, export: None where not given. meshes: files that objects
+    were read from.
     """
 
     problem: MotionProblem
@@ -151,6 +155,7 @@ class Recipe:
     export: ExportOptions | None = None
     repairs: Repairs | None = None
     meshes: tuple[Path, ...] = ()
+    file: FileReading = field(default_factory=FileReading)
 
 
 def read_recipe_text(path: str | Path) -> str:
@@ -215,8 +220,9 @@ def recipe_of(values: dict[str, Any], source: Source) -> Recipe:
     loop = LOOP.read(table) if problem.loop else None
     export = EXPORT.read(table) if EXPORT.header in table.values else None
     repairs = RECORDING.read(table) if RECORDING.header in table.values else None
-    meshes = object_files(values, source.path)
-    return Recipe(problem, table.word("clip"), under, result, keys, loop, export, repairs, meshes)
+    meshes, file = object_files(values, source.path), FILE.read(table)
+    clip = table.word("clip")
+    return Recipe(problem, clip, under, result, keys, loop, export, repairs, meshes, file)
 
 
 def locate(text: str, fault: Fault) -> int | None:
@@ -236,6 +242,8 @@ def _places(values: dict[str, Any], fault: Fault) -> list[KeyPath]:
             return [("contact", i, "name") for i, entry in contacts if entry["name"] == fault.name]
         case FitNeedsSupport():
             return [("unseen_support",)]
+        case OptionNotTaken():
+            return [(FILE.header, fault.option)]
         case OddScale():
             return [(RECORDING.header, "scale")]
         case NotBetweenFrames():
@@ -253,7 +261,7 @@ def _places(values: dict[str, Any], fault: Fault) -> list[KeyPath]:
             return [place for place, called in _names(values) if called == fault.thing]
         case BadDimensions():
             return [(*REDUCTION, "dimensions"), REDUCTION]
-    named = [getattr(fault, field) for field in CULPRITS if hasattr(fault, field)]
+    named = [getattr(fault, name) for name in CULPRITS if hasattr(fault, name)]
     places = [place for name in named for place, called in _names(values) if called == name]
     return [inner for place in places for inner in _inside(values, place, fault)]
 
@@ -271,7 +279,7 @@ def _names(values: dict[str, Any]) -> list[tuple[tuple[str, int], str]]:
 def _inside(values: dict[str, Any], place: tuple[str, int], fault: Fault) -> list[KeyPath]:
     """The keys and elements of a record that a fault quotes, then the record itself."""
     header, i = place
-    texts = [getattr(fault, field.name) for field in fields(fault) if field.name not in CULPRITS]
+    texts = [getattr(fault, each.name) for each in fields(fault) if each.name not in CULPRITS]
     quoted = [text for text in texts if isinstance(text, str)]
     found: list[KeyPath] = []
     for key, held in values[header][i].items():

@@ -1,4 +1,12 @@
-"""Keys of a recipe's recording: repairs that it gets when it is read.
+"""Keys of a recipe's recording: how its file is read, and repairs that it gets then.
+
+[file]                          # as the command line's options say it, which go before these
+unit = 0.0254                   # m per unit of length
+up = "Y"                        # or "Z": the axis that points up
+rate = 120                      # frames a second, of an AMC or BVH file
+asf = "01.asf"                  # an AMC file's skeleton, relative to the recipe; not in batches
+armature = "Rig"                # whose motion, of an FBX file or a .blend that holds several
+take = "Jump"                   # which, of an FBX file that holds several
 
 [recording]
 up = "Y"                        # the axis, as it was read, that is to become Z; "-X" ...
@@ -18,11 +26,14 @@ floor = 0.12                    # m; the height that becomes 0
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from math import hypot
+from typing import get_args
 
 from ...solver.data.problem import Mend
 from ...solver.doctor.repairs import MOST_MISSING, MissingFrames, Repairs, UpAxis
-from ..recipe_syntax.items import Item, Kind, Values, choice, number, whole
+from ..formats.motion_clip import UpAxis as FileUpAxis
+from ..recipe_syntax.items import Item, Kind, Values, choice, number, one, whole, word
 from ..recipe_syntax.table import ABOVE_ZERO, NumberRange, Table
 
 FASTEST_DRIFT = 15.0  # m/s; treadmills go to 12
@@ -74,6 +85,43 @@ def _read_mend(table: Table) -> Values:
 def _write_mend(repairs: Repairs) -> Values:
     return {"repair": tuple(mend.value for mend in repairs.mend) or None}
 
+
+@dataclass(frozen=True)
+class FileReading:
+    """What is stated of how a clip's file is read; None where the file tells, or it is guessed.
+
+    unit: m per unit of length. up: the axis that points up. rate: Hz. asf: an AMC file's skeleton,
+    relative to the recipe. armature, take: which of those in the file.
+    """
+
+    unit: float | None = None
+    up: FileUpAxis | None = None
+    rate: float | None = None
+    asf: str | None = None
+    armature: str | None = None
+    take: str | None = None
+
+
+def _read_up(table: Table, key: str) -> str | None:
+    axis, known = table.word(key), get_args(FileUpAxis)
+    if axis not in known:
+        table.refuse(key, f'unknown axis "{axis}"; known: {", ".join(known)}')
+    return axis
+
+
+FILE = Kind(
+    "file",
+    FileReading,
+    (
+        number("unit", ABOVE_ZERO),
+        one("up", _read_up),
+        number("rate", ABOVE_ZERO),
+        word("asf"),
+        word("armature"),
+        word("take"),
+    ),
+    named=False,
+)
 
 RECORDING = Kind(
     "recording",

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...bridge.formats.acclaim import clip_files
+from ...bridge.recipe.recording import FileReading
 from ...solver.analysis.analyse import chosen_frames
 from ...solver.analysis.take import require_inside
 from ...solver.data.faults import ClipNotOpened, MirroredInBlender, NoArmature, NotInFile
@@ -20,6 +21,7 @@ from ...solver.doctor.stretch import Span
 from ...solver.skeleton.bind_pose import bind_frames
 from ...solver.worker.pipeline import Subject, measure
 from ...solver.worker.stated_scale import check_scale
+from ..words.analysis_text import relative
 from .quiet import quiet
 from .stages import Stages
 
@@ -49,6 +51,11 @@ class Clip:
     asf: Path | None = None
     armature: str | None = None
     take: str | None = None
+
+    def stated(self, recipe: Path) -> FileReading:
+        """What is stated of how its file is read, as a recipe at this path has it."""
+        asf = None if self.asf is None else relative(self.asf, recipe)
+        return FileReading(self.unit, self.up, self.rate, asf, self.armature, self.take)
 
     @property
     def files(self) -> tuple[Path, ...]:

@@ -3,8 +3,8 @@
 import argparse
 import math
 import sys
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, replace
 from io import TextIOWrapper
 from pathlib import Path
 
@@ -73,7 +73,9 @@ def parser() -> argparse.ArgumentParser:
     )
     analyzing = commands.add_parser("analyze", help="print a clip's phases and contacts")
     analyzing.set_defaults(act=analyze)
-    analyzing.add_argument("--recipe", type=Path, help="whose frames, bones and objects count")
+    analyzing.add_argument(
+        "--recipe", type=Path, help="whose [file], frames, bones, repairs and objects count"
+    )
     analyzing.add_argument(
         "--write-recipe", type=Path, metavar="FILE", help="leave a recipe to start from"
     )
@@ -200,13 +202,15 @@ def analyze(options: argparse.Namespace) -> None:
     if options.recipe is not None:
         asked = parse_recipe(read_recipe_text(options.recipe), str(options.recipe))
     problem = overridden(asked.problem, options)
-    loaded = load(_clip(options, None), problem, Stages(sys.stdout), asked.repairs)
+    clip = _clip(options, asked)
+    loaded = load(clip, problem, Stages(sys.stdout), asked.repairs)
     _ask_about(problem, loaded, asked.repairs)
     print()
     print(analysis_text(loaded.subject.analysis, loaded.origin), end="")
     target: Path | None = options.write_recipe
     if target is not None:
-        text = starter_recipe(loaded.subject.analysis, loaded.problem, options.clip, target)
+        stated = clip.stated(target), asked.repairs
+        text = starter_recipe(loaded.subject.analysis, loaded.problem, clip.path, target, *stated)
         try:
             with target.open("x", encoding="utf-8") as file:
                 file.write(text)
@@ -234,28 +238,37 @@ def _ask_about(problem: MotionProblem, loaded: LoadedClip, repairs: Repairs | No
 
 def doctor(options: argparse.Namespace) -> None:
     """Prints what is wrong with a clip; leaves a recipe where asked. Raises Fault."""
-    clip, problem = _clip(options, None), overridden(MotionProblem(), options)
+    asked = Recipe(MotionProblem())
+    clip, problem = _clip(options, asked), overridden(asked.problem, options)
     examination = examined(clip, problem, options.mass)
     print(told(examination, as_json=options.json), end="")
     target: Path | None = options.write_recipe
     if target is not None:
-        write_recipe_of(examination, clip, target)
+        write_recipe_of(examination, target)
         print(f"\nWritten:\n  {target}", file=sys.stderr if options.json else sys.stdout)
 
 
-def _clip(options: argparse.Namespace, recipe: Recipe | None) -> Clip:
-    """The clip given, else the recipe's. Raises BadRecipe where there is neither."""
+def _clip(options: argparse.Namespace, recipe: Recipe) -> Clip:
+    """The clip given, else the recipe's, to be read as the options say, else as the recipe does.
+
+    Raises BadRecipe where there is neither, OptionNotTaken.
+    """
     path: Path | None = options.clip
     if path is None:
-        if recipe is None or recipe.clip is None:
+        if recipe.clip is None:
             problem = 'no recording; name one on the command line, or here as clip = "..."'
             raise BadRecipe(str(options.recipe), None, problem)
         path = options.recipe.parent / recipe.clip
-    _require_taken(options, path)
-    return Clip(path, **{name: getattr(options, name) for name in _ALL})
+    given = {name: getattr(options, name) for name in _ALL}
+    stated = asdict(recipe.file)
+    _require_taken(path, {f"--{name}": value for name, value in given.items()})
+    _require_taken(path, stated)
+    if recipe.file.asf is not None:
+        stated["asf"] = options.recipe.parent / recipe.file.asf
+    return Clip(path, **{n: stated[n] if given[n] is None else given[n] for n in _ALL})
 
 
-# By suffix: the options about how such a file is read.
+# By suffix: the options, and keys of a recipe, about how such a file is read.
 _ALL = ("unit", "up", "rate", "asf", "armature", "take")
 _TAKEN = {
     ".bvh": ("unit", "up", "rate"),
@@ -265,12 +278,12 @@ _TAKEN = {
 }
 
 
-def _require_taken(options: argparse.Namespace, path: Path) -> None:
-    """Raises OptionNotTaken for an option that would go unheard."""
+def _require_taken(path: Path, stated: Mapping[str, object]) -> None:
+    """Raises OptionNotTaken for an option, or a recipe's key, that would go unheard."""
     taken = _TAKEN.get(path.suffix.lower(), _ALL)
-    for name in _ALL:
-        if getattr(options, name) is not None and name not in taken:
-            raise OptionNotTaken(f"--{name}", path.name)
+    for name, value in stated.items():
+        if value is not None and name.removeprefix("--") not in taken:
+            raise OptionNotTaken(name, path.name)
 
 
 def overridden(problem: MotionProblem, options: argparse.Namespace) -> MotionProblem:

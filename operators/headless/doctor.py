@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ...bridge.recipe.recording import RECORDING
+from ...bridge.recipe.recording import FILE, RECORDING
 from ...bridge.recipe_syntax.toml_text import entries, sections
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
@@ -27,19 +27,23 @@ from .outbox import not_writable
 class Examination:
     """The diagnosis of a clip, and how its file was read.
 
-    frames: first and last one that were examined; None where none were chosen.
+    problem: as it was asked for, with the first and last frame of those that were examined where
+    some were chosen. mass: kg, None where the artist stated none.
     """
 
     diagnosis: Diagnosis
     origin: Origin
-    frames: Span | None
+    clip: Clip
+    problem: MotionProblem
+    mass: float | None
 
 
 def examined(clip: Clip, problem: MotionProblem, mass: float | None) -> Examination:
     """mass: kg, None where the artist stated none. Raises Fault."""
     recording, whole, origin = read_clip(clip, problem)
     diagnosis = diagnose(recording, problem.bones, mass).counted_in(whole, recording.ends)
-    return Examination(diagnosis, origin, problem.frames and recording.ends)
+    problem = replace(problem, frames=problem.frames and recording.ends)
+    return Examination(diagnosis, origin, clip, problem, mass)
 
 
 def told(examination: Examination, *, as_json: bool) -> str:
@@ -60,16 +64,23 @@ def told(examination: Examination, *, as_json: bool) -> str:
     return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 
 
-def write_recipe_of(examination: Examination, clip: Clip, target: Path) -> None:
-    """A new recipe with the repairs. Raises OutputNotWritable."""
-    diagnosis = examination.diagnosis
+def write_recipe_of(examination: Examination, target: Path) -> None:
+    """A new recipe with the repairs, and with what was stated for the diagnosis. Raises
+    OutputNotWritable."""
+    diagnosis, problem = examination.diagnosis, examination.problem
     top = {
-        "clip": relative(clip.path, target),
-        "frames": examination.frames and _kept(examination.frames, diagnosis),
-        "mass": diagnosis.mass and round(diagnosis.mass),
+        "clip": relative(examination.clip.path, target),
+        "frames": problem.frames and _kept(problem.frames, diagnosis),
+        "mass": round(diagnosis.mass) if diagnosis.mass else examination.mass,
+        "height": problem.height,
     }
-    repairs = RECORDING.write(rounded(diagnosis.repairs))
-    text = "\n".join([entries(top), *sections(RECORDING.header, repairs)])
+    tables = {
+        "bones": dict(problem.bones),
+        FILE.header: FILE.write(examination.clip.stated(target)),
+        RECORDING.header: RECORDING.write(rounded(diagnosis.repairs)),
+    }
+    texts = [text for header, values in tables.items() for text in sections(header, values)]
+    text = "\n".join([entries(top), *texts])
     try:
         with target.open("x", encoding="utf-8") as file:
             file.write(text)

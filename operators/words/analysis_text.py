@@ -7,11 +7,14 @@ from pathlib import Path
 
 from ...bridge.recipe.contacts import added_texts
 from ...bridge.recipe.object_texts import object_text, support_texts
+from ...bridge.recipe.recording import FILE, RECORDING, FileReading
+from ...bridge.recipe_syntax.toml_text import sections
 from ...solver.analysis.analyse import Analysis
 from ...solver.data.contacts import Contact, Phase, PhaseKind
 from ...solver.data.faults import UnseenSupport
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
+from ...solver.doctor.repairs import Repairs
 from .messages import sentence, together
 from .report_text import guesses, held_at_rest
 
@@ -84,8 +87,16 @@ def _span(analysis: Analysis, start: float, end: float) -> str:
     return f"{first + start * rate:.1f} to {first + end * rate:.1f}"
 
 
-def starter_recipe(analysis: Analysis, problem: MotionProblem, clip: Path, recipe: Path) -> str:
-    """A commented recipe that pins the first landing where it is, for the artist to change."""
+def starter_recipe(
+    analysis: Analysis,
+    problem: MotionProblem,
+    clip: Path,
+    recipe: Path,
+    file: FileReading | None = None,
+    repairs: Repairs | None = None,
+) -> str:
+    """A commented recipe that pins the first landing where it is, for the artist to change. file:
+    what was stated of how the clip is read. repairs: that it got."""
     recording = analysis.performance.recording
     landing = _first_landing(analysis)
     contacts = () if landing is None else analysis.schedule.of_phase(landing)
@@ -99,11 +110,12 @@ def starter_recipe(analysis: Analysis, problem: MotionProblem, clip: Path, recip
             f"clip = {_quoted(relative(clip, recipe))}",
             f"frames = [{recording.frames[0] + 0.0:g}, {recording.frames[-1]:g}]",
             f"mass = {problem.mass:g}  # kg",
-            f"# height = {analysis.performance.character.height:.2f}  # m, as measured; "
-            "another one scales the figure",
+            _height(analysis, problem),
             f"mass_table = {_quoted(problem.mass_table.value)}",
             *_bones(problem),
             "",
+            *sections(FILE.header, FILE.write(file or FileReading())),
+            *sections(RECORDING.header, RECORDING.write(repairs or Repairs())),
             "# Phases found, with their frames:",
             *phases,
             "",
@@ -117,6 +129,13 @@ def starter_recipe(analysis: Analysis, problem: MotionProblem, clip: Path, recip
             *(object_text(thing) for thing in problem.scene),
         ]
     )
+
+
+def _height(analysis: Analysis, problem: MotionProblem) -> str:
+    if problem.height is not None:
+        return f"height = {problem.height:g}  # m"
+    measured = analysis.performance.character.height
+    return f"# height = {measured:.2f}  # m, as measured; another one scales the figure"
 
 
 def _pin(landing: Phase | None, contacts: Sequence[Contact]) -> list[str]:

@@ -283,6 +283,26 @@ def test_what_a_check_leaves_out_is_counted_in_the_whole_clip(tmp_path: Path) ->
     assert "remedy: trim = 90\n" in told
 
 
+@pytest.mark.slow
+def test_clips_are_read_as_the_recipe_says_unless_the_command_does(tmp_path: Path) -> None:
+    recipe, clip = tmp_path / "recipe.toml", str(mocap_path("hop_01_01.bvh"))
+    recipe.write_text("frames = [20, 190]\n[file]\nunit = 0.12\n")
+    for unit, found in ((None, 1.0), (0.0254 / 0.45, 0.0)):
+        out = tmp_path / f"out {unit}"
+        plan(Asked(BatchSettings(check=True, unit=unit), [clip], [str(recipe)]), out)
+        assert run_cell(out, cells(out)[0].cell).figures["findings"] == found
+
+
+def test_a_skeleton_in_a_recipe_is_refused(tmp_path: Path, capsys) -> None:
+    """Every clip of a batch has its own."""
+    recipe = tmp_path / "recipe.toml"
+    recipe.write_text('[file]\nasf = "01.asf"\n')
+    clip = str(mocap_path("hop_01_01.bvh"))
+    assert run([clip, "--recipes", str(recipe), "--out", str(tmp_path / "out")]) == 2
+    assert "line 2: " in (said := capsys.readouterr().err)
+    assert "put the skeleton beside" in said
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

@@ -2,6 +2,7 @@
 
 import json
 import re
+from contextlib import redirect_stdout
 from io import StringIO
 from pathlib import Path
 
@@ -13,6 +14,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 from hangtime.batch.cells.reading import read_clip
 from hangtime.bridge.formats.bvh import read_bvh
 from hangtime.bridge.recipe.problem import locate, parse_recipe
+from hangtime.bridge.recipe.recording import FileReading
 from hangtime.operators.headless.cli import main
 from hangtime.operators.headless.clip import Clip, load
 from hangtime.operators.headless.stages import Stages
@@ -67,6 +69,49 @@ def test_more_frames_than_the_file_announces_are_told(tmp_path: Path, capsys) ->
     told = capsys.readouterr()
     assert "announces 300 frames, but 336 lines" in told.err
     assert "at 100 frames a second" in told.out
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", ["doctor", "analyze"])
+def test_a_recipe_has_what_was_stated(command: str, tmp_path: Path, capsys) -> None:
+    """Its remedies are of the clip as it was read then: `adapt` guessed another unit."""
+    recipe, options = tmp_path / "mend.toml", ["--unit", str(TOO_LARGE), "--up", "y"]
+    stated = ["--rate", "100", "--mass", "61.5", "--height", "1.8", "--bone", "left foot=LeftFoot"]
+    clip, write = str(mocap_path(CLIP)), ["--write-recipe", str(recipe)]
+    assert main([command, clip, *FRAMES, *options, *stated, *write]) == 0
+    written = parse_recipe(recipe.read_text(encoding="utf-8"))
+    assert written.file == FileReading(TOO_LARGE, "Y", 100.0)
+    problem = written.problem
+    assert (problem.frames, problem.mass, problem.height) == ((100.0, 290.0), 61.5, 1.8)
+    assert problem.bones == {"left foot": "LeftFoot"}
+
+
+def read_by(recipe: Path, *options: str) -> str:
+    """What `analyze` says of the figure."""
+    out = StringIO()
+    with redirect_stdout(out):
+        assert main(["analyze", str(mocap_path(CLIP)), "--recipe", str(recipe), *options]) == 0
+    (figure,) = (line for line in out.getvalue().splitlines() if line.startswith("figure"))
+    return figure
+
+
+@pytest.mark.slow
+def test_a_clip_is_read_as_its_recipe_says_unless_an_option_does(tmp_path: Path) -> None:
+    recipe = tmp_path / "mend.toml"
+    file = f"[file]\nunit = {TOO_LARGE}\n"
+    recipe.write_text(f"frames = [100, 290]\n{file}[recording]\nscale = 0.47\n")
+    assert read_by(recipe) == read_by(recipe, "--unit", str(TOO_LARGE))
+    assert read_by(recipe) != read_by(recipe, "--unit", "0.1")
+    again = tmp_path / "again.toml"
+    read_by(recipe, "--write-recipe", str(again))
+    assert read_by(again) == read_by(recipe)
+
+
+def test_a_key_that_would_go_unheard_is_refused_with_its_line(tmp_path: Path, capsys) -> None:
+    recipe = tmp_path / "mend.toml"
+    recipe.write_text("[file]\nunit = 0.01\nrate = 60\n")
+    assert main(["analyze", "clip.fbx", "--recipe", str(recipe)]) == 2
+    assert "line 3: “rate” does not count for clip.fbx" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(("option", "value"), [("--rate", "60"), ("--up", "Z"), ("--asf", "a.asf")])

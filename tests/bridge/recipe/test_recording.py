@@ -1,8 +1,8 @@
 """Repairs of the recording in a recipe."""
 
 import pytest
-from hangtime.bridge.recipe.problem import parse_recipe, write_recipe
-from hangtime.bridge.recipe.recording import RECORDING
+from hangtime.bridge.recipe.problem import parse_recipe, parse_text, write_recipe
+from hangtime.bridge.recipe.recording import FILE, RECORDING, FileReading
 from hangtime.bridge.recipe_syntax.toml_text import sections
 from hangtime.solver.data.faults import BadRecipe
 from hangtime.solver.data.problem import Mend, MotionProblem
@@ -16,6 +16,24 @@ FULL = Repairs(UpAxis.MINUS_X, MISSING, 2, MENDS, 0.8, 1.6, (0.1, -0.25), 0.12, 
 def test_repairs_come_back() -> None:
     texts = sections(RECORDING.header, RECORDING.write(FULL))
     assert parse_recipe("\n".join(texts)).repairs == FULL
+
+
+def test_how_a_file_is_read_comes_back() -> None:
+    stated = FileReading(0.0254, "Z", 120.0, "../01.asf", "Rig", "Jump")
+    assert parse_recipe("\n".join(sections(FILE.header, FILE.write(stated)))).file == stated
+    assert parse_recipe("mass = 70\n").file == FileReading()
+
+
+@pytest.mark.parametrize("line", ["unit = 0", 'up = "X"', "up = 1", "rate = -30", 'scale = "1"'])
+def test_a_mistake_about_the_file_is_told_with_its_line(line: str) -> None:
+    with pytest.raises(BadRecipe) as told:
+        parse_recipe(f"[file]\n{line}\n")
+    assert told.value.line == 2
+
+
+def test_in_blender_where_the_file_is_read_already_its_keys_are_refused() -> None:
+    with pytest.raises(BadRecipe, match=r"counts in a recipe.*the armature.*s action"):
+        parse_text("[file]\nunit = 0.0254\n", "Text")
 
 
 def test_a_recipe_that_says_nothing_repairs_nothing() -> None:
