@@ -121,6 +121,8 @@ def remedy_label(finding: Finding, remedy: Repairs, mass: float, rate: float) ->
         if finding.kind is FindingKind.SIZE:
             return f"Scale to {finding.amount * remedy.scale:.2f} m"
         return f"Scale × {remedy.scale:.3g}"
+    if remedy.floor != 0.0:
+        return REMEDIES[FindingKind.FLOOR]
     return REMEDIES.get(finding.kind, REPAIR)
 
 

@@ -26,6 +26,10 @@ from .trembling_feet import drift_of_stances
 FLOOR_OFF = 0.03  # m, from the world's 0
 TOP_OFF = 0.05  # m, likewise, of a box: how thick soles are is told by a floor at 0 alone
 LOW = 0.03  # m above the floor: a foot that stands
+NEAR = 0.2  # m above the floor, where a foot still stands that sinks to it
+UNEVEN = 0.02  # m, standard deviation of where feet stand; of honest ones on one floor up to 0.01
+STRAIGHT = 0.3  # of that, which is left without the rise; two stances on a stair's steps leave 0.5
+FEWEST_STANCES = 3
 DRIFT = 0.12  # m/s; feet that roll over in runs leave 0.1
 FLAT_FAST = 0.8 * FLAT_SPEED  # m/s, of which feet that stand flat no longer tell
 FLAT_DRIFT = 0.04  # m/s, of feet that stand flat; honest ones leave 0.014
@@ -76,9 +80,10 @@ def find_footing(
 
 
 def _floor(performance: Performance, schedule: ContactSchedule) -> Finding | None:
-    """Feet that stand on another height than the world's 0. Where nothing stands there is no floor:
-    that of contacts is then the lowest that feet reach in the air. Who also stands at 0, unseen, or
-    on an object of the scene, jumps down from there: moved, the recording would leave that."""
+    """Feet that stand on another height than the world's 0, or sink to it. Where nothing stands
+    there is no floor: that of contacts is then the lowest that feet reach in the air. Who also
+    stands at 0, unseen, or on an object of the scene, jumps down from there: moved, the recording
+    would leave that."""
     if not schedule.contacts and not schedule.unseen:
         return None
     points, floor = contact_points(performance)
@@ -87,7 +92,29 @@ def _floor(performance: Performance, schedule: ContactSchedule) -> Finding | Non
     boxes = (b for u in schedule.unseen for b in boxes_beneath(performance.times, points, u, floor))
     if any(abs(box.top) <= TOP_OFF for box in boxes):
         return None
-    return Finding(FindingKind.FLOOR, floor, "m", remedy=Repairs(floor=floor))
+    level, rise = Repairs(floor=floor), _rise_to_floor(performance)
+    if rise is not None:
+        return Finding(
+            FindingKind.RISING, rise, "m/s", remedy=Repairs(rise=rise), alternative=level
+        )
+    return Finding(FindingKind.FLOOR, floor, "m", remedy=level)
+
+
+def _rise_to_floor(performance: Performance) -> float | None:
+    """M/s, at which feet rise, or sink, that stand near the floor, within their stances and from
+    one to the next: where they stand flat for too short a time for `find_rise`, as in a run. On
+    stairs they stand still, and two short stances may be on anything."""
+    near = standing(performance, NEAR)
+    slow = np.linalg.norm(near.velocities[:, :2], axis=1) < FLAT_SPEED
+    times, heights = near.times[slow], near.places[slow, 2]
+    if len(times) < LEAST_STANDING or np.std(heights) < UNEVEN:
+        return None
+    apart = APART + 1.0 / performance.recording.rate
+    stances = _Slides.of(times, near.velocities[slow], apart).seconds
+    rise = float(np.polyfit(times, heights, 1)[0])
+    told = len(stances) >= FEWEST_STANCES or max(stances) > LEAST_LEVEL
+    steady = abs(rise) > RISE and np.std(heights - rise * times) < STRAIGHT * np.std(heights)
+    return rise if told and steady else None
 
 
 def _sinking(performance: Performance) -> Finding | None:
@@ -205,15 +232,16 @@ class LowestPoint:
     velocities: FloatArray
 
 
-def standing(performance: Performance) -> LowestPoint:
-    """When, where and how fast the lowest point of the feet stands, near its floor."""
+def standing(performance: Performance, high: float = LOW) -> LowestPoint:
+    """When, where and how fast the lowest point of the feet stands, near its floor. high: m above
+    that."""
     points, floor = contact_points(performance)
     feet = [point.track for point in points.values() if point.kind is not PointKind.HAND]
     tracks = np.stack(feet, axis=1)
     velocity = np.gradient(tracks, performance.times, axis=0)
     lowest = np.argmin(tracks[:, :, 2], axis=1), np.arange(len(tracks))
     place, speed = tracks[lowest[1], lowest[0]], velocity[lowest[1], lowest[0]]
-    stands = (place[:, 2] - floor < LOW) & (np.abs(speed[:, 2]) < STANDING_SPEED_UP)
+    stands = (place[:, 2] - floor < high) & (np.abs(speed[:, 2]) < STANDING_SPEED_UP)
     return LowestPoint(performance.times[stands], place[stands], speed[stands])
 
 

@@ -75,6 +75,9 @@ def test_remedies_are_called_by_what_they_set() -> None:
     clock = Finding(FindingKind.TIME_SCALE, 15.3, "m/s²")
     assert remedy_label(clock, Repairs(time_scale=1.25), 0.0, 150.0) == "Set 120 fps"
     assert remedy_label(clock, Repairs(scale=0.64), 0.0, 150.0) == "Scale × 0.64"
+    sinking = Finding(FindingKind.RISING, -0.12, "m/s")
+    assert remedy_label(sinking, Repairs(rise=-0.12), 0.0, 24.0) == "Hold Level"
+    assert remedy_label(sinking, Repairs(floor=-0.24), 0.0, 24.0) == "Put on the Floor"
     giant = Finding(FindingKind.SIZE, 30.1, "m")
     assert remedy_label(giant, Repairs(scale=0.05644), 0.0, 24.0) == "Scale to 1.70 m"
     heavy = Finding(FindingKind.MASS, 200.0, "kg")

@@ -102,6 +102,31 @@ def test_who_steps_up_does_not_drift() -> None:
     assert find_rise(stepped, figure()) is None
 
 
+@pytest.mark.parametrize("down", [0.1, 0.15])
+def test_who_steps_down_to_a_low_floor_does_not_sink(down: float) -> None:
+    """Though both heights, of two stances, are on one line."""
+    fallen = np.clip((jump().times - jump().times[100]) / 0.6, 0.0, 1.0)[:, None, None]
+    heads = jump().heads - np.array([0.0, 0.0, down]) * (1.0 + fallen)
+    found = find_footing(perform(replace(jump(), heads=heads), character()))
+    (floor,) = (f for f in found if not f.kind.note and f.kind is not FindingKind.SINKING)
+    assert floor.kind is FindingKind.FLOOR
+    assert floor.amount == pytest.approx(-2.0 * down, abs=0.02)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["run_1.bvh", "run_3.bvh"])
+def test_a_run_that_sinks_is_told_so_and_not_as_on_a_low_floor(name: str) -> None:
+    """Its feet do not stand flat, and the lowest stance alone was told as the floor."""
+    damaged = rising(-0.12).of(load_recording(name))
+    diagnosis = diagnose(damaged.recording)
+    (found,) = (f for f in diagnosis.findings if not f.kind.note)
+    assert found.kind is FindingKind.RISING
+    assert found.amount == pytest.approx(-0.12, abs=0.02)
+    assert found.alternative is not None
+    assert found.alternative.floor < -0.1
+    assert apart(repaired(damaged.recording, diagnosis.repairs), damaged.original) < 0.02
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["run_1.bvh", "run_3.bvh"])
 def test_a_run_on_a_treadmill_stands_on_the_floor(name: str) -> None:
