@@ -237,6 +237,7 @@ def write_analysis(
     stances = rows_named(settings.stances, list(found.axes))
     for stance, axes in zip(stances, found.axes.values(), strict=True):
         stance.shifted, stance.turned, stance.forward_axis = (0.0, 0.0, 0.0), 0.0, axes[:, 0]
+        stance.backwards = stance.name in found.backwards
     contacts = found.schedule.contacts
     names = [contact.name for contact in contacts] + [held.name for held in added]
     settings.analysed_contacts = "\n".join((*names, *settings.analysed.splitlines()))

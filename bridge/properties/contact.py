@@ -110,11 +110,15 @@ def _set_turn(stance: HangtimeStance, to: float) -> None:
 
 
 class HangtimeStance(bpy.types.PropertyGroup):
-    """A stance, which is all contacts of a ground phase; `name` is the phase's ("ground 2")."""
+    """A stance, which is all contacts of a ground phase; `name` is the phase's ("ground 2").
+
+    backwards: whether forward is at the body's back.
+    """
 
     COMPUTED = ("forward", "left", "up", "turn")
 
     forward_axis: hidden(vector())
+    backwards: hidden(boolean())
     shifted: hidden(vector())
     turned: hidden(number())
 

@@ -45,6 +45,7 @@ class StanceRow(Protocol):
 
     name: str
     forward_axis: Any
+    backwards: bool
     shifted: Any
     turned: float
     turn: float

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ...solver.analysis.leaps import Leap, Stand, leaps
-from ...solver.analysis.pinned_places import pinned_places
+from ...solver.analysis.pinned_places import backward_stances, pinned_places
 from ...solver.data.faults import Fault
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
@@ -23,6 +23,7 @@ from ..words.doubt_text import (
     floor_doubts,
     up_doubts,
 )
+from ..words.request_doubt_text import direction_doubts
 
 
 def doubts_about(
@@ -37,6 +38,8 @@ def doubts_about(
         subject.schedule.phases,
         _leaps(subject),
     )
+    found = subject.analysis
+    doubts += direction_doubts(problem, backward_stances(found.performance, found.schedule))
     unscaled = scaled_recording(subject.recording, 1.0 / subject.factor)
     doubts += distance_doubts(problem, unscaled.heads)
     doubts += damage_doubts(faults_of(unscaled, problem))

@@ -10,6 +10,7 @@ from ...bridge.recipe.object_texts import object_text, support_texts
 from ...bridge.recipe.recording import FILE, RECORDING, FileReading
 from ...bridge.recipe_syntax.toml_text import sections
 from ...solver.analysis.analyse import Analysis
+from ...solver.analysis.pinned_places import backward_stances
 from ...solver.data.contacts import Contact, Phase, PhaseKind
 from ...solver.data.faults import UnseenSupport
 from ...solver.data.problem import MotionProblem
@@ -119,7 +120,7 @@ def starter_recipe(
             "# Phases found, with their frames:",
             *phases,
             "",
-            *_pin(landing, contacts),
+            *_pin(landing, contacts, backward_stances(analysis.performance, analysis.schedule)),
             "# Contacts found, with their frames; correct one by its name:",
             *found,
             "# [[contact]]",
@@ -138,16 +139,18 @@ def _height(analysis: Analysis, problem: MotionProblem) -> str:
     return f"# height = {measured:.2f}  # m, as measured; another one scales the figure"
 
 
-def _pin(landing: Phase | None, contacts: Sequence[Contact]) -> list[str]:
+def _pin(landing: Phase | None, contacts: Sequence[Contact], backwards: Sequence[str]) -> list[str]:
+    """backwards: the ground phases whose forward is at the body's back."""
     if landing is None:
         return ["# Nothing touches here, so there is no landing to pin.", ""]
+    there = ", which is at the body's back" if landing.name in backwards else ""
     points = ", ".join(dict.fromkeys(_quoted(c.point) for c in contacts))
     return [
         "[[pin]]",
         'name = "Landing"',
         f"phase = {_quoted(landing.name)}",
         f"# points = [{points}]  # only these; else all that touches",
-        "forward = 0.0  # along the jump; negative is back",
+        f"forward = 0.0  # along the jump{there}; negative is back",
         "left = 0.0",
         "up = 0.0",
         "turn = 0  # counter-clockwise from above",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from math import degrees, tau
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from ...solver.analysis.leaps import Leap
 from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.contacts import Phase, PhaseKind
-from ...solver.data.problem import MotionProblem
+from ...solver.data.problem import MotionProblem, OffsetAxes
 from ...solver.data.requests import AddedMass, PhaseTiming
 from ...solver.data.scene import SceneObject
 from .messages import length
@@ -51,6 +51,17 @@ def request_doubts(
         *_of_limits(problem),
         *_of_speeds(problem.scene),
     ]
+
+
+def direction_doubts(problem: MotionProblem, backwards: Collection[str]) -> list[str]:
+    """A line where pins move what lands backwards along its travel. backwards: the ground phases
+    whose forward is at the body's back."""
+    names = [
+        pin.name
+        for pin in problem.pins
+        if pin.phase in backwards and pin.axes is OffsetAxes.TRAVEL and any(pin.offset[:2])
+    ]
+    return [f"{quoted(names)}: forward is the way it travels, at the body's back"] if names else []
 
 
 def whole_turn_doubts(turns: Iterable[tuple[str, float]]) -> list[str]:

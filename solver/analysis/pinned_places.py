@@ -20,6 +20,7 @@ SAME_FOOT_TOLERANCE = 0.02  # m; toes bend
 # m; Blender's places are in single precision, which tells 0.06 mm there: contacts are held to that
 FURTHEST = 1000.0
 FOOT_LENGTH = 0.152  # of the stature (Drillis & Contini 1966)
+BACKWARDS = float(np.cos(np.radians(120.0)))  # of travel to facing; sideways jumps go by 90°
 SLOW_WALK = 1.0  # m/s; a runner's flights are short, but he goes somewhere
 
 
@@ -156,9 +157,7 @@ def travel_axes(performance: Performance, schedule: ContactSchedule, phase: Phas
     Forward: level, along the flight that ends in the phase, or else the first one. Who lands
     on his own footprints goes nowhere: then it is where the pelvis faces at the take-off.
     """
-    flights = [p for p in schedule.phases if p.kind is PhaseKind.FLIGHT]
-    before = [f for f in flights if f.end <= phase.start + 1e-9]
-    flight = before[-1] if before else (flights[0] if flights else phase)
+    flight = _flight_of(schedule, phase)
     com = performance.com
     start, end = (
         np.array([np.interp(t, performance.times, com[:, k]) for k in range(3)])
@@ -170,6 +169,25 @@ def travel_axes(performance: Performance, schedule: ContactSchedule, phase: Phas
         ahead = _facing(performance, flight.start)
     ahead /= np.linalg.norm(ahead)
     return np.stack([ahead, np.cross(UP, ahead), UP], axis=1)
+
+
+def backward_stances(performance: Performance, schedule: ContactSchedule) -> tuple[str, ...]:
+    """Names of the ground phases whose forward is at the body's back."""
+    return tuple(p.name for p in schedule.stances if _goes_backwards(performance, schedule, p))
+
+
+def _goes_backwards(performance: Performance, schedule: ContactSchedule, phase: Phase) -> bool:
+    """As the body faces at the take-off."""
+    facing = _facing(performance, _flight_of(schedule, phase).start)
+    ahead = travel_axes(performance, schedule, phase)[:, 0]
+    return float(facing @ ahead) < BACKWARDS * float(np.linalg.norm(facing))
+
+
+def _flight_of(schedule: ContactSchedule, phase: Phase) -> Phase:
+    """The flight that ends in a ground phase, else the first one, else the phase."""
+    flights = [p for p in schedule.phases if p.kind is PhaseKind.FLIGHT]
+    before = [f for f in flights if f.end <= phase.start + 1e-9]
+    return before[-1] if before else (flights[0] if flights else phase)
 
 
 def _facing(performance: Performance, time: float) -> FloatArray:

@@ -128,7 +128,8 @@ class Analysed:
     height: m, as measured. axes: (3, 3) by ground phase's name, columns forward, left and up.
     bones: by the part of the body that they move ("left foot"). fleshed: names of the bodies whose
     solid shapes are from the mesh. cycle: whose frames these are,
-    where the motion shall repeat. unseen: where something unseen carries the body.
+    where the motion shall repeat. unseen: where something unseen carries the body. backwards: the
+    ground phases whose forward is at the body's back.
     """
 
     id: int
@@ -140,6 +141,7 @@ class Analysed:
     fleshed: tuple[str, ...] = ()
     cycle: Cycle | None = None
     unseen: tuple[UnseenSupport | Treadmill, ...] = ()
+    backwards: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from .sidebar import OF_SOLVES, ArmaturePanel, draw_at_work, draw_list, settings
 
 NOT_SOUGHT = "Press Analyze to find them"
 NONE_FOUND = "Nothing touches in these frames"
+BACKWARDS = "Forward is at the body's back"
 
 
 class ContactsPanel(ArmaturePanel):
@@ -51,6 +52,8 @@ class StancePanel(ArmaturePanel):
         column = layout.column(align=True)
         for name in ("forward", "left", "up", "turn"):
             column.prop(stance, name)
+        if stance.backwards:
+            layout.label(text=BACKWARDS, icon="INFO")
         if draw_at_work(layout, *OF_SOLVES):  # letting go of a pin adapts
             return
         buttons = layout.row(align=True)

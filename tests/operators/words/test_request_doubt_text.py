@@ -5,7 +5,11 @@ from math import radians
 
 import numpy as np
 import pytest
-from hangtime.operators.words.request_doubt_text import request_doubts, whole_turn_doubts
+from hangtime.operators.words.request_doubt_text import (
+    direction_doubts,
+    request_doubts,
+    whole_turn_doubts,
+)
 from hangtime.solver.analysis.leaps import Leap
 from hangtime.solver.data.contacts import Phase, PhaseKind
 from hangtime.solver.data.problem import MotionProblem, Pin
@@ -138,3 +142,11 @@ def test_a_recorded_leap_is_not_asked_about_however_far_it_goes() -> None:
 def test_a_stance_that_is_wound_by_its_places_is_told() -> None:
     (told,) = whole_turn_doubts([("ground 1", radians(-350.0)), ("ground 2", radians(720.0))])
     assert told.startswith("Ground 2 is turned by 720°, but whole turns of a stance are not jumped")
+
+
+def test_who_moves_a_backward_landing_forward_is_told_which_way_that_is() -> None:
+    ahead, up = (Pin("L", "ground 2", offset=offset) for offset in ((0.2, 0, 0), (0, 0, 0.2)))
+    told = direction_doubts(MotionProblem(pins=(ahead,)), ["ground 2"])
+    assert told == ["“L”: forward is the way it travels, at the body's back"]
+    assert direction_doubts(MotionProblem(pins=(ahead,)), ["ground 1"]) == []
+    assert direction_doubts(MotionProblem(pins=(up,)), ["ground 2"]) == []

@@ -5,7 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hangtime.solver.analysis.analyse import analyse
-from hangtime.solver.analysis.pinned_places import FURTHEST, pinned_places, travel_axes
+from hangtime.solver.analysis.pinned_places import (
+    FURTHEST,
+    backward_stances,
+    pinned_places,
+    travel_axes,
+)
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.faults import (
     BeyondPrecision,
@@ -84,6 +89,15 @@ def test_on_the_spot_ahead_is_where_the_body_faces() -> None:
     back = -0.1 / (flight.end - flight.start) * performance.times[:, None] * travels
     drifting = replace(performance, com=still.com + back)  # 0.1 m backwards in its flight
     assert travel_axes(drifting, analysis.schedule, phase)[:, 0] == pytest.approx(faces)
+
+
+def test_of_a_jump_backwards_forward_is_at_the_bodys_back() -> None:
+    performance, schedule = hop().performance, hop().schedule
+    assert backward_stances(performance, schedule) == ()
+    back, left = np.diag([-1.0, -1.0, 1.0]), np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1]])
+    backwards = replace(performance, com=performance.com @ back)
+    assert LANDING in backward_stances(backwards, schedule)
+    assert backward_stances(replace(performance, com=performance.com @ left), schedule) == ()
 
 
 def test_places_are_for_the_contacts_centre() -> None:
