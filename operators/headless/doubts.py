@@ -21,6 +21,7 @@ from ..words.doubt_text import (
     doubts_of,
     file_doubts,
     floor_doubts,
+    rise_doubts,
     up_doubts,
 )
 from ..words.request_doubt_text import direction_doubts
@@ -46,6 +47,7 @@ def doubts_about(
     if repairs is None:
         return doubts
     lies = find_up(subject.recording, figure_of(subject.recording, problem.bones)) is not None
+    doubts += rise_doubts(repairs.rise)
     doubts += up_doubts(repairs.up, lies=lies)
     feet, on_objects = subject.schedule.floor_m, bool(subject.stood_on)
     return doubts + floor_doubts(repairs.floor, feet, on_objects=on_objects)

@@ -29,6 +29,7 @@ A_FRAME = 1.0
 MOST_AWAY = 30.0  # m; the longest triple jumps go 18
 MOST_DAMAGES = 4
 MOST_TAKES = 8  # by name, of a file that may hold a hundred
+MOST_DRIFT = 0.5  # m/s, upwards
 SOLES = 0.1  # m, that the highest platform shoes put between foot and floor
 
 
@@ -144,6 +145,13 @@ def floor_doubts(stated: float, feet: float, *, on_objects: bool) -> list[str]:
         return []
     there = f"they stand at {stated + feet:.2f} m"
     return [f"“floor = {stated:g}” is not where the feet are: {there}. State that height, or none"]
+
+
+def rise_doubts(rise: float) -> list[str]:
+    """A line where a recording is taken upwards or downwards faster than capture drifts, m/s."""
+    if abs(rise) <= MOST_DRIFT:
+        return []
+    return [f"“rise = {rise:g}” is more m/s than capture drifts upwards, and takes the feet off"]
 
 
 def _of_far(far: Mapping[str, float]) -> list[str]:

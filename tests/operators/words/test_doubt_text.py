@@ -4,7 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hangtime.operators.words.doubt_text import distance_doubts, doubts_of, floor_doubts, up_doubts
+from hangtime.operators.words.doubt_text import (
+    distance_doubts,
+    doubts_of,
+    floor_doubts,
+    rise_doubts,
+    up_doubts,
+)
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import (
     AddedMass,
@@ -106,6 +112,12 @@ def test_a_floor_within_soles_or_below_objects_is_not_asked_about(
     stated: float, feet: float, on_objects: bool
 ) -> None:
     assert floor_doubts(stated, feet, on_objects=on_objects) == []
+
+
+def test_a_rise_that_takes_the_feet_off_is_told() -> None:
+    (told,) = rise_doubts(-4.0)
+    assert "rise = -4" in told
+    assert rise_doubts(0.2) == []
 
 
 def test_a_figure_that_was_turned_to_lie_is_told() -> None:
