@@ -27,6 +27,7 @@ if TYPE_CHECKING:  # which Blender's own module is needed for, and batches do wi
 LEANEST, HEAVIEST = 12.0, 45.0
 A_FRAME = 1.0
 MOST_AWAY = 30.0  # m; the longest triple jumps go 18
+MOST_BELOW = 0.5  # m, of a point below the ground
 MOST_DAMAGES = 4
 MOST_TAKES = 8  # by name, of a file that may hold a hundred
 MOST_DRIFT = 0.5  # m/s, upwards
@@ -64,7 +65,7 @@ def distance_doubts(problem: MotionProblem, heads: FloatArray) -> list[str]:
     )
     off = {name: _away(place, shift, heads) for name, place, shift in asked}
     far = {name: metres for name, metres in off.items() if metres > MOST_AWAY}
-    return [*_of_far(far), *_of_high(problem, heads)]
+    return [*_of_far(far), *_of_high(problem, heads), *_of_low(problem, heads)]
 
 
 def empty_doubts(left: Sequence[LeftEmpty]) -> list[str]:
@@ -175,6 +176,16 @@ def _of_high(problem: MotionProblem, heads: FloatArray) -> Iterator[str]:
                 f"“{point.name}” is {length(above)} above all that was recorded, and nobody"
                 f"{there(gravity)} jumps higher than {length(highest(gravity))}"
             )
+
+
+def _of_low(problem: MotionProblem, heads: FloatArray) -> Iterator[str]:
+    """Points far below the recording's ground, where nothing is asked to stand lower."""
+    if problem.pins:
+        return
+    for point in problem.requests.points:
+        below = -np.inf if point.place is None else float(heads[..., 2].min()) - point.place[2]
+        if below > MOST_BELOW and not point.environment:
+            yield f"“{point.name}” is {length(below)} below all that was recorded, in the ground"
 
 
 def _of_frames(problem: MotionProblem, there: FloatArray) -> Iterator[str]:

@@ -93,6 +93,15 @@ def test_a_point_that_nobody_jumps_to_is_told_but_on_the_moon() -> None:
     assert distance_doubts(replace(USUAL, requests=moon), HEADS) == []
 
 
+def test_a_point_in_the_ground_is_told_where_nothing_stands_lower() -> None:
+    requests = Requests(points=(PointRequest("Ball", "Hand", When(), place=(2.0, 0.0, -2.0)),))
+    asked = replace(USUAL, requests=requests)
+    (told,) = distance_doubts(asked, HEADS)
+    assert told.startswith("“Ball” is 2.10 m below all that was recorded, in the ground")
+    down = Pin("Down", "ground 2", offset=(0.0, 0.0, -2.0))
+    assert distance_doubts(replace(asked, pins=(down,)), HEADS) == []
+
+
 def test_a_child_with_a_man_s_mass_is_told_by_its_measured_height() -> None:
     assert "1.20 m" in doubts_of(USUAL, 1.2, FRAMES)[0]
 
