@@ -28,6 +28,7 @@ from ..armature.poses import frames_per_second, metres_per_unit
 from ..properties.contact import HangtimeContact
 from ..properties.settings import HangtimeSettings
 from ..properties.stances import active_contact, move_empties, place
+from ..repairs.analysis_key import analysis_key, span_of
 from ..repairs.stored import applied, of_recording, unreadable
 from ..repairs.unreadable import require_readable
 from ..rows.copying import rows_named
@@ -43,7 +44,6 @@ from ..rows.phases import listed, phases_of, unseen_frames
 from ..rows.protocols import ContactRow
 from ..scene.members import ground_members, present_members
 from ..takes.options import loop_options, text_of
-from .analysis_key import analysis_key, span_of
 from .bone_mapping import chosen_parts
 from .requests import joined, requests_of
 

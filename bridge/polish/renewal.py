@@ -10,9 +10,9 @@ from ...solver.arrays import FloatArray
 from ...solver.data.contacts import ContactSchedule
 from ..armature import fcurves
 from ..armature.incremental import Incremental
-from ..constraints.analysis_key import wanted_range
 from ..controls.driven import is_driven
 from ..properties.settings import action_settings, settings_of
+from ..repairs.analysis_key import wanted_range
 from ..rows.choices import BodyKind
 from ..takes.options import loop_options
 from ..takes.owned import owned_channels, placing_channels

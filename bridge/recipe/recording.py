@@ -76,9 +76,9 @@ def _write_drift(repairs: Repairs) -> Values:
 def _read_mend(table: Table) -> Values:
     known = {mend.value: mend for mend in Mend}
     words = table.words("repair")
-    for word in words:
-        if word not in known:
-            table.refuse("repair", f'"{word}" is no repair; known: {", ".join(known)}')
+    for each in words:
+        if each not in known:
+            table.refuse("repair", f'"{each}" is no repair; known: {", ".join(known)}')
     return {"mend": tuple(mend for word, mend in known.items() if word in words)}
 
 

@@ -7,8 +7,8 @@ import bpy
 from ...bridge.accessors import present
 from ...bridge.armature.incremental import Incremental
 from ...bridge.armature.poses import require_unstretched
-from ...bridge.constraints.analysis_key import analysis_is_of
 from ...bridge.properties.settings import settings_of
+from ...bridge.repairs.analysis_key import analysis_is_of
 from ...bridge.scene.members import present_members
 from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault, TimeStretched

@@ -11,15 +11,6 @@ from ...bridge.armature.actions import (
 )
 from ...bridge.armature.incremental import Incremental
 from ...bridge.armature.read import last_keyed
-from ...bridge.constraints.analysis_key import (
-    analysis_is_of,
-    analysis_key,
-    rates_since,
-    repaired_since,
-    span_of,
-    spans_since,
-    wanted_range,
-)
 from ...bridge.constraints.bone_mapping import chosen_parts
 from ...bridge.constraints.leaps import leaps_of, timed_phases
 from ...bridge.constraints.motion_problem import problem_of
@@ -33,6 +24,15 @@ from ...bridge.loops.write_loop import (
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ...bridge.recipe.keys import require_every_frame
 from ...bridge.recipe.result import require_return_after, require_return_within
+from ...bridge.repairs.analysis_key import (
+    analysis_is_of,
+    analysis_key,
+    rates_since,
+    repaired_since,
+    span_of,
+    spans_since,
+    wanted_range,
+)
 from ...bridge.repairs.stored import undoubted
 from ...bridge.rows.aimed_requests import apart_from_aimed, require_unaimed
 from ...bridge.rows.choices import LoopRoot, WrittenAs

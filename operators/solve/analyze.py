@@ -12,7 +12,6 @@ from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.incremental import Incremental
 from ...bridge.armature.played import wrong_speed
 from ...bridge.armature.traces_store import keep
-from ...bridge.constraints.analysis_key import analysis_is_of, span_of
 from ...bridge.constraints.bone_mapping import evidence_of, find_parts, missing_parts
 from ...bridge.constraints.motion_problem import problem_of, write_analysis
 from ...bridge.properties.settings import (
@@ -22,6 +21,7 @@ from ...bridge.properties.settings import (
     settings_of,
 )
 from ...bridge.properties.stances import active_contact
+from ...bridge.repairs.analysis_key import analysis_is_of, span_of
 from ...bridge.worker_client import shared
 from ...bridge.worker_requests import PendingRequest
 from ...solver.analysis.take import require_inside

@@ -13,7 +13,6 @@ from ...bridge.armature.poses import frames_per_second, require_unstretched
 from ...bridge.armature.strips import layers_above
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
-from ...bridge.constraints.analysis_key import SAME_RATE
 from ...bridge.constraints.standing import missed_contacts
 from ...bridge.constraints.status import write_status
 from ...bridge.controls.aimed import aimed_in, without
@@ -32,6 +31,7 @@ from ...bridge.properties.of_actions.shown_overlaps import store_overlaps
 from ...bridge.properties.of_actions.shown_times import store_times
 from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.recipe.result import require_return_after
+from ...bridge.repairs.analysis_key import SAME_RATE
 from ...bridge.rows.choices import After, ContactMarkers, WrittenAs
 from ...bridge.rows.phases import roles
 from ...bridge.scene.played_end import play_longer

@@ -15,7 +15,7 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature.incremental import complete
-from hangtime.bridge.constraints.analysis_key import analysis_is_of, analysis_key
+from hangtime.bridge.repairs.analysis_key import analysis_is_of, analysis_key
 from hangtime.operators.solve.adapt import read_wanted
 from hangtime.tests.blender.helpers import stored
 

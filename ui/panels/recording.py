@@ -3,8 +3,8 @@
 import bpy
 
 from ...bridge.accessors import present
-from ...bridge.constraints.analysis_key import repaired_since
 from ...bridge.properties.settings import HangtimeSettings, settings_of
+from ...bridge.repairs.analysis_key import repaired_since
 from ...bridge.repairs.stored import (
     applied,
     finding_of,

@@ -73,7 +73,7 @@ def test_more_frames_than_the_file_announces_are_told(tmp_path: Path, capsys) ->
 
 @pytest.mark.slow
 @pytest.mark.parametrize("command", ["doctor", "analyze"])
-def test_a_recipe_has_what_was_stated(command: str, tmp_path: Path, capsys) -> None:
+def test_a_recipe_has_what_was_stated(command: str, tmp_path: Path) -> None:
     """Its remedies are of the clip as it was read then: `adapt` guessed another unit."""
     recipe, options = tmp_path / "mend.toml", ["--unit", str(TOO_LARGE), "--up", "y"]
     stated = ["--rate", "100", "--mass", "61.5", "--height", "1.8", "--bone", "left foot=LeftFoot"]

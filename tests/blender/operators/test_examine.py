@@ -14,11 +14,11 @@ from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.armature.fcurves import curves_of, put, table
 from hangtime.bridge.armature.keys_digest import keys_digest
 from hangtime.bridge.armature.read import read_recording
-from hangtime.bridge.constraints.analysis_key import repaired_since
 from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.bridge.fake_users import guard
 from hangtime.bridge.files.import_clip import import_clip
 from hangtime.bridge.recipe.problem import parse_recipe
+from hangtime.bridge.repairs.analysis_key import repaired_since
 from hangtime.bridge.repairs.missing_keys import put_in
 from hangtime.bridge.repairs.placed_armature import repair
 from hangtime.bridge.repairs.stored import (

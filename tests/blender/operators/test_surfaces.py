@@ -13,9 +13,9 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.traces_store import kept
-from hangtime.bridge.constraints.analysis_key import analysis_key
 from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.bridge.constraints.surface_status import KEPT_OUT, write_surface_status
+from hangtime.bridge.repairs.analysis_key import analysis_key
 from hangtime.bridge.repairs.placed_armature import repair
 from hangtime.bridge.takes.takes import AskedSettings
 from hangtime.operators.drag.drag_state import Landing

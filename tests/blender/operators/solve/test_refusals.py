@@ -17,7 +17,7 @@ from hangtime.bridge import worker_client, worker_requests
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.pose_basis import basis_under
 from hangtime.bridge.armature.poses import sample
-from hangtime.bridge.constraints.analysis_key import analysis_is_of, analysis_key
+from hangtime.bridge.repairs.analysis_key import analysis_is_of, analysis_key
 from hangtime.bridge.rows.phases import phases_of
 from hangtime.operators.solve.adapt import read_wanted
 from hangtime.solver.data.recording import POSE_TOLERANCE
