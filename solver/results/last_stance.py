@@ -8,8 +8,8 @@ from ..stages.warm_start import Standing, end_move, stance_moves
 
 
 def last_stance_move(adaptation: Adaptation) -> StanceMove | None:
-    """The least-squares rigid move of the contacts that stand where the last ground phase ends;
-    None where no phase has contacts that were found.
+    """The least-squares rigid move of the contacts that stand where the last stance ends, from
+    which the body may fly on or something unseen carry it; None where no contacts were found.
 
     From where the fit has them, so that what nobody moves stays to the last bit; to where the
     motion has them, which short of its target is on the way there.

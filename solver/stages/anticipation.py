@@ -68,8 +68,10 @@ def changed_jumps(
 ) -> tuple[Jump, ...]:
     """The jumps that are longer or shorter with contacts at target (n_contacts, 3) m.
 
-    kept: intervals whose durations are to stay.
+    A jump to a grip or from one is as long as it was recorded: grips move nothing. kept: intervals
+    whose durations are to stay.
     """
+    grips = [contact for contact in schedule.contacts if contact.asked_for]
     moves = stance_moves(schedule, Standing.still(start.places), Standing.still(target))
     return tuple(
         jump
@@ -78,6 +80,7 @@ def changed_jumps(
         and any(
             before.end <= jump.take_off
             and jump.landing <= after.start
+            and not any(c.start < after.start and c.end > before.end for c in grips)
             and np.linalg.norm(after.shift - before.shift) > MIN_MOVE
             for before, after in pairwise(moves)
         )

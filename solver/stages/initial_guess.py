@@ -14,7 +14,9 @@ from ..data.requests import PointRequest
 from ..data.solver_options import MIN_SPAN
 from ..fitting.fit import Fit
 from ..fitting.transcribe import body_points, point_contacts
+from ..numerics.rotations import cross_matrix
 from ..numerics.splines import THIRD_DERIVATIVE_WEIGHT, SplineBasis, dense_instants, phase_breaks
+from ..transcription.contact_pins import PointContact
 from ..transcription.motion import Motion
 from ..transcription.transcription import Transcription
 from ..unseen.support_force import harness, support_force
@@ -26,7 +28,8 @@ MAX_HELD_SPAN = 0.04  # s; a held frame tells nothing of the swing that physics 
 def resampled_fit(
     fit: Fit, problem: MotionProblem, context: EvaluationContext, added: dict[str, PointRequest]
 ) -> Motion:
-    """The reference on the problem's own contacts, timeline and knots, without constraints."""
+    """The reference on the problem's own contacts, timeline and knots, without constraints. Added
+    contacts take over what they can of unseen support."""
     reference, schedule = context.reference, context.schedule
     t = reference.transcription
     coarse = problem.requests.solution.longest_span
@@ -111,21 +114,48 @@ def _resampled(
 
 
 def _taken_over(x: FloatArray, t: Transcription, added: Container[str]) -> FloatArray:
-    """The unknowns with added contacts that can carry a weight carrying what was unseen while they
-    hold, in equal shares: what is nearest to the fit, which does not know them, would leave them
-    next to nothing."""
+    """The unknowns with added contacts that can carry a weight carrying of what was unseen, while
+    they hold, what they can from where they are: what is nearest to the fit, which does not know
+    them, would leave them next to nothing."""
     able = [c for c in t.contacts if c.contact.name in added and c.bears_weight]
-    forces = [t.layout.force(c.point) for c in able]
-    if t.support is None or not forces:
+    if t.support is None or not able:
         return x
-    carries = np.array([t.active[:, force].any(axis=1) for force in forces])  # (n, K)
-    shares = carries / np.maximum(carries.sum(axis=0), 1)
-    unseen = x[:, t.support_columns].reshape(len(x), -1, 3).sum(axis=1)
-    x = x.copy()
-    for force, share in zip(forces, shares, strict=True):
-        x[:, force] += share[:, None] * unseen
-    x[carries.any(axis=0), t.support_columns] = 0.0
+    x, motion = x.copy(), Motion(t, x, np.zeros((len(t.contacts), 3)))
+    nodes, breaks = t.basis.force_nodes(np.arange(t.basis.n_spans)), t.basis.breaks
+    once, first = np.unique(nodes, return_index=True)
+    instants = np.stack([breaks[:-1], breaks[1:]], axis=1).ravel()[first]
+    places = motion.contact_points(instants)
+    for block, points in zip(t.layout.force_block(once).tolist(), places, strict=True):
+        mine = [c for c in able if t.active[block, t.layout.force(c.point)].any()]
+        if mine:
+            unseen, at = x[block, t.support_columns].reshape(-1, 3), points[-t.n_support :]
+            forces, rest = _shared(unseen, at, mine, points[[c.point for c in mine]])
+            x[block, t.support_columns] = rest.ravel()
+            for contact, force in zip(mine, forces, strict=True):
+                x[block, t.layout.force(contact.point)] += force
     return x
+
+
+def _shared(
+    unseen: FloatArray, at: FloatArray, contacts: Sequence[PointContact], places: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Forces of contacts at places (n, 3), and what is left of the unseen ones (m, 3) at points
+    (m, 3): as little as can be, with the same sum and moment. Who leans on a table beside a chair
+    still sits on the chair. No contact pulls but a grip."""
+    middle = at.mean(axis=0)
+    held, pushed = (_wrenches(points - middle) for points in (at, places))
+    left = np.linalg.pinv(held)  # (3 m, 6), the least forces there of a force and a moment
+    wrench = held @ unseen.ravel()
+    forces = np.linalg.lstsq(left @ pushed, left @ wrench, rcond=None)[0].reshape(-1, 3)
+    normals = np.array([contact.normal for contact in contacts])
+    grips = np.array([contact.friction is None for contact in contacts])
+    forces[((forces * normals).sum(axis=1) < 0.0) & ~grips] = 0.0
+    return forces, left @ (wrench - pushed @ forces.ravel())
+
+
+def _wrenches(places: FloatArray) -> FloatArray:
+    """(6, 3 n) sum and moment of forces at places (n, 3)."""
+    return np.concatenate([np.vstack([np.eye(3), cross_matrix(p)]) for p in places], axis=1)
 
 
 def _current_places(motion: Motion, fit: Fit) -> FloatArray:

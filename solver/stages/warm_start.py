@@ -149,6 +149,7 @@ def stance_moves(
     Grips and other contacts that were asked for move nothing: the arms reach for them (arm_ik.py).
     wanted: turns of contacts, by names, rad. Places alone cannot tell a half turn left from one
     right, nor a whole turn from none; without a wish a stance is turned as the one before it ended.
+    Of a single point they tell no turn at all: it is the one that is wished.
     """
     moves: list[RigidMove] = []
     turned = 0.0
@@ -163,8 +164,11 @@ def stance_moves(
             count = 2 + int(RIDE_RATE * (stance.end - stance.start))
             times = np.linspace(stance.start, stance.end, count)
         turns = ((wanted or {}).get(schedule.contacts[i].name, 0.0) for i in mine)
-        asked = turned + max(turns, key=abs)
+        wish = max(turns, key=abs)
+        asked = turned + wish
         move = _least_squares(stance.start, stance.end, times, mine, (before, after), asked)
+        if len(mine) == 1 and wish:
+            move = replace(move, turns=move.turns + asked - move.turns[0])
         turned += float(move.turns[-1] - move.turns[0])
         moves.append(move)
     return tuple(moves)
@@ -295,7 +299,8 @@ def partial_places(
         part, back = move.share(share), move.back
         at = np.array([move.start])
         for i, contact in enumerate(schedule.contacts):
-            if contact.start < move.end and contact.end > move.start:
+            together = contact.start < move.end and contact.end > move.start
+            if together and not contact.asked_for:
                 # What the move leaves over (feet that part) comes in by the same share.
                 rest = back.of(after[i : i + 1], at) - before[i]
                 places[i] = part.of(before[i : i + 1] + share * rest, at)[0]

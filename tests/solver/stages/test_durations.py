@@ -11,7 +11,7 @@ from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.contacts import Interval
 from hangtime.solver.data.problem import MotionProblem, OffsetAxes, Pin
-from hangtime.solver.data.requests import PhaseTiming, Requests
+from hangtime.solver.data.requests import Hold, PhaseTiming, PointRequest, Requests, When
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.solver_options import SolverOptions
 from hangtime.solver.data.status import Durations
@@ -23,10 +23,11 @@ from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.solver.stages.setup import set_up
 from hangtime.solver.transcription.motion import Motion
 from hangtime.tests.helpers.clips import JUMP, load_recording
-from hangtime.tests.helpers.fitted_hop import HOP_CLIP
+from hangtime.tests.helpers.fitted_hop import HOP_CLIP, fitted_hop
 
 FLIGHT, LANDING = "flight 1", "ground 2"
 DISTANCE = 0.77  # m, of the feet from take-off to landing
+APEX = 89.0  # frame of the shorter hop's highest
 
 
 @cache
@@ -129,6 +130,19 @@ def test_a_hop_that_is_carried_as_a_whole_keeps_its_times() -> None:
 def test_a_turn_alone_keeps_its_times() -> None:
     setup = set_up(whole_hop(), to(0.0, turn=np.pi / 2))
     assert setup.context.timeline.unchanged
+
+
+def test_a_jump_to_a_bar_keeps_its_times_though_the_landing_behind_it_moves() -> None:
+    """Nobody moved the grip."""
+    hands = tuple(
+        PointRequest(f"{hand} on a bar", hand, When(phase="hanging"), environment=True, grip=True)
+        for hand in ("LeftHand", "RightHand")
+    )
+    requests = Requests(points=hands, holds=(Hold("hanging", APEX, 0.5),))
+    further = to(0.3)
+    assert set_up(fitted_hop(), further).durations is Durations.FOUND
+    hanging = replace(further, requests=requests)
+    assert set_up(fitted_hop(), hanging).durations is Durations.RECORDED
 
 
 def test_the_artist_may_keep_all_times() -> None:

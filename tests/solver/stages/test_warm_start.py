@@ -25,6 +25,18 @@ def landed(schedule: ContactSchedule) -> list[int]:
     return [i for i, c in enumerate(schedule.contacts) if c.start >= unseen.end]
 
 
+def test_a_stance_of_one_point_turns_as_it_is_wished() -> None:
+    """Its place tells nothing of it; it stood between two that turned, unturned."""
+    schedule = carried()
+    lone, *rest = landed(schedule)
+    places = np.array([c.place for c in schedule.contacts])
+    contacts = tuple(c for i, c in enumerate(schedule.contacts) if i not in rest)
+    standing = Standing.still(np.delete(places, rest, axis=0))
+    wanted = {schedule.contacts[lone].name: TURN}
+    _, landing = stance_moves(replace(schedule, contacts=contacts), standing, standing, wanted)
+    assert np.allclose(landing.turns, TURN)
+
+
 @pytest.mark.parametrize("whole", [0.0, 2.0 * np.pi])
 def test_a_landing_behind_what_is_unseen_moves_by_itself(whole: float) -> None:
     """whole: rad, of a turn that places do not tell; it is the landing's alone."""

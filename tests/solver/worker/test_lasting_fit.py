@@ -161,20 +161,25 @@ def test_what_is_carried_so_is_adapted() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("normal", "least", "most"), [((0.0, 0.0, 1.0), 0.9, 1.0), ((1.0, 0.0, 0.0), 0.0, 0.1)]
+    ("bones", "normal", "least", "most"),
+    [
+        (("LeftToeBase", "RightToeBase"), (0.0, 0.0, 1.0), 0.9, 1.0),
+        (("LeftToeBase", "RightToeBase"), (1.0, 0.0, 0.0), 0.0, 0.1),
+        (("LeftHand",), (0.0, 0.0, 1.0), 0.1, 0.5),
+    ],
 )
 def test_points_that_push_back_carry_what_was_unseen(
-    normal: tuple[float, float, float], least: float, most: float
+    bones: tuple[str, ...], normal: tuple[float, float, float], least: float, most: float
 ) -> None:
-    """Where they can: nobody stands on a wall. least, most: their share of the vertical force."""
+    """Where they can: nobody stands on a wall, or hangs all of the body on one hand at its side.
+    least, most: their share of the vertical force."""
     (flight,) = subject().schedule.flights
     first = float(subject().recording.frames[0])
     when = When(frames=(first, first + flight.start * subject().recording.rate))
-    toes = tuple(
-        PointRequest(f"{side} toe on it", f"{side}ToeBase", when, environment=True, normal=normal)
-        for side in ("Left", "Right")
+    points = tuple(
+        PointRequest(f"{bone} on it", bone, when, environment=True, normal=normal) for bone in bones
     )
-    asked = subject().asked(MotionProblem(requests=Requests(points=toes)))
+    asked = subject().asked(MotionProblem(requests=Requests(points=points)))
     made = adapt_fit(asked, fitted(), StageClock())
     assert made.fault is None
     motion = made.adaptation.motion
