@@ -41,17 +41,19 @@ def bursts(recording: Recording, local: LocalPoses, figure: Figure) -> BoolArray
         limit = (TOE_TURN if part is Part.TOE else TURN) * slack(recording.rate, part)
         for first, last in _bursts(turned_steps(local, bone), limit, turned_back):
             unsound[first : last + 1, bone] = True
-    root = figure.bones[0]
+    root, far = figure.bones[0], PLACE * slack(recording.rate)
     steps = np.diff(local.heads[:, root], axis=0)
 
     def moved_back(into: int, out: int) -> bool:
-        """As seen by who moves as fast as the frames beside."""
+        """As seen by who moves as fast as the frames beside. Steps beside a leap are uneven, too,
+        but no leaps."""
         beside = np.concatenate([steps[:into][-1:], steps[out + 1 :][:1]])
         seen = steps[into : out + 1] - beside.sum(axis=0) / max(len(beside), 1)
         left = np.linalg.norm(seen.sum(axis=0))
-        return bool(left < RETURNED * np.linalg.norm(seen[[0, -1]], axis=1).min())
+        leapt = np.linalg.norm(seen[[0, -1]], axis=1).min()
+        return bool(leapt > far and left < RETURNED * leapt)
 
-    for first, last in _bursts(leaping_steps(steps), PLACE * slack(recording.rate), moved_back):
+    for first, last in _bursts(leaping_steps(steps), far, moved_back):
         unsound[first : last + 1, root] = True
     return unsound
 

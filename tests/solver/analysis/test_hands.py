@@ -73,4 +73,4 @@ def test_hands_on_the_floor_are_told_with_contacts_that_carry() -> None:
 def test_hands_in_mid_air_carry_nothing() -> None:
     _, unseen = told(on_hands(lift=0.4))
     assert unseen.hands == ()
-    assert "add_contact" not in explained(unseen, None)
+    assert "Left hand" not in explained(unseen, None)
