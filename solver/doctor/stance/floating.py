@@ -22,6 +22,10 @@ from .flat_feet import flat_feet
 # of honest feet by 1.5 cm; and how fast they move, where those on stairs stand still.
 RISES, RISES_BY = 0.03, 0.03  # m, and m/s
 STEP = 0.15  # m; what the ground's way leaves of such differences is a stair's, or a box's
+# Where feet stand shortly their velocities tell little of the way between, and it leaves as much on a
+# level floor. To be level it must then go by some 0.6 to 1.2 cm/s, rms, otherwise than without
+# these heights, and by 1.5 to 6 where one is a box's.
+PULLED = 0.013  # m/s
 OUTER = 10.0, 90.0  # %
 SLIDES = 0.06  # m along the floor, of a foot in one stance; honest ones move by 2 to 4 cm
 SLIDE_SHARE = 1.0 / 3.0  # of the time in which feet stand; one may be drawn along the floor
@@ -117,19 +121,32 @@ class _Ground:
 
     @cached_property
     def is_one_floor(self) -> bool:
-        """Whether the ground's way alone is why heights differ, and no box on which some stand."""
-        return self._spread(self.height - self._way(PLACE_WEIGHT)[:, 2]) < STEP
+        """Whether the ground's way alone is why heights differ, and no box on which some stand: it
+        explains them, or takes them with hardly other velocities below these feet."""
+        free = self._free_way[:, 2]
+        if self._spread(self.height - free) < STEP:
+            return True
+        pulled = (np.gradient(self._level_way - free) * self.rate)[self.tells]
+        return bool(np.sqrt(np.mean(pulled**2)) < PULLED)
 
     @cached_property
     def way(self) -> FloatArray:
         """(T, 3) m, the way with these velocities, and on one floor with these heights."""
-        along = self._way(PLACE_WEIGHT)[:, :2]
-        if not self.is_one_floor:
-            return np.hstack([along, self._way(APART_WEIGHT)[:, 2:]])
+        up = self._level_way if self.is_one_floor else self._way(APART_WEIGHT)[:, 2]
+        return np.column_stack([self._free_way[:, :2], up])
+
+    @cached_property
+    def _free_way(self) -> FloatArray:
+        """(T, 3) m, the way by these velocities alone."""
+        return self._way(PLACE_WEIGHT)
+
+    @cached_property
+    def _level_way(self) -> FloatArray:
+        """(T,) m, the way upwards if all heights are of one floor."""
         floor = np.median(self.height[self.tells])
         above = np.repeat((self.height - floor)[:, None], 3, axis=1)
         level = SplineTerm(0, HEIGHT_WEIGHT * self.tells, above)
-        return np.hstack([along, self._way(PLACE_WEIGHT, level)[:, 2:]])
+        return self._way(PLACE_WEIGHT, level)[:, 2]
 
     def _spread(self, heights: FloatArray) -> float:
         """M, by which heights (T,), m, differ where feet stand."""
