@@ -16,6 +16,10 @@ JUMP = np.radians(20.0)  # from a frame to the next; at 24 a second no joint lea
 # at rest and none is far from it, and then a part of all jump. Recordings' own frames have 0.3 of
 # them at rest, and none jumps at the beginning.
 MOST, NEAR, PART = 0.8, np.radians(30.0), 0.2
+# Others put a T pose before a motion whose rest hangs the arms, with a wrist or the head off by some
+# degrees: joints beyond TURNED are alike in pairs, two thirds of all are at rest. Of those that are
+# not turned 0.63 and more leave such a pose at once; where arms alone are keyed in steps none does.
+TURNED, ALIKE, LEAST, LEAVE = np.radians(10.0), np.radians(5.0), 0.65, 0.5
 
 
 def bind_frames(recording: Recording) -> int:
@@ -46,15 +50,18 @@ def last_bind_frames(recording: Recording) -> int:
 
 
 def _spread_frames(away: FloatArray, local: FloatArray) -> int:
-    """Likewise of a T pose where the rest hangs the arms: a few joints are from their rest, each as
-    far as another one, and jump together. away: (T, J) rad. local: (T, J, 3, 3)."""
-    turned = away[0] >= AT_REST
+    """Likewise of a T pose where the rest hangs the arms: a few joints are far from their rest, each
+    as far as another one, and jump together as most others leave theirs. away: (T, J) rad. local:
+    (T, J, 3, 3)."""
+    turned = away[0] >= TURNED
     far = np.sort(away[0, turned])
-    paired = len(far) % 2 == 0 and bool((np.diff(far)[::2] < AT_REST).all())
-    if not turned.any() or not paired or turned.mean() > 1.0 - MOST:
+    paired = len(far) % 2 == 0 and bool((np.diff(far)[::2] < ALIKE).all())
+    if not turned.any() or not paired or (away[0] < AT_REST).mean() < LEAST:
         return 0
     count = _beginning((angles_between(local[:1], local) < AT_REST).all(axis=1))
-    return count if count and bool(_jumps(local, count)[turned].all()) else 0
+    if not count or not _jumps(local, count)[turned].all():
+        return 0
+    return count if _jumps(local, count, AT_REST)[~turned].mean() > LEAVE else 0
 
 
 def _beginning(held: BoolArray) -> int:
@@ -62,9 +69,9 @@ def _beginning(held: BoolArray) -> int:
     return 0 if held.all() else int(np.argmin(held))
 
 
-def _jumps(local: FloatArray, frame: int) -> BoolArray:
-    """(J,) which joints (T, J, 3, 3) jump to a frame."""
-    return np.asarray(angles_between(local[frame - 1], local[frame]) > JUMP)
+def _jumps(local: FloatArray, frame: int, least: float = JUMP) -> BoolArray:
+    """(J,) which joints (T, J, 3, 3) jump to a frame, by more than the least, rad."""
+    return np.asarray(angles_between(local[frame - 1], local[frame]) > least)
 
 
 def _between(first: FloatArray, second: FloatArray) -> FloatArray:
