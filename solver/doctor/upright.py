@@ -30,7 +30,8 @@ def find_up(recording: Recording, figure: Figure) -> Finding | None:
     """A figure that in most of the clip stands along another axis than Z, and at rest too, or by
     what carries it: of a turned object the motion alone may lie.
 
-    Who lies or stands on the hands is upright at rest, and goes by what is lowest.
+    Who lies or stands on the hands is upright at rest, and goes by what is lowest. Who hangs by the
+    feet goes below them, too, but above the floor; of a turned object the body is below it.
     """
     feet, heads = figure.of(Part.FOOT), figure.of(Part.HEAD, Part.NECK)
     if not heads:
@@ -44,7 +45,8 @@ def find_up(recording: Recording, figure: Figure) -> Finding | None:
     if _along(rest[0] - np.mean(rest[1:], axis=0)) is not up:
         length = float(np.linalg.norm(way))
         along, lowest = (_carried(recording, figure, axis, length) for axis in (up, UpAxis.Z))
-        if along < CARRIED or lowest > ELSEWHERE * along:
+        hangs = up is UpAxis.MINUS_Z and np.median(recording.heads[:, heads[0], 2]) > 0.0
+        if hangs or along < CARRIED or lowest > ELSEWHERE * along:
             return None
     return Finding(FindingKind.UP_AXIS, 90.0, "°", remedy=Repairs(up=up))
 

@@ -27,6 +27,7 @@ from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.faults import UnseenSupport
 from hangtime.solver.data.problem import Mend, MotionProblem
+from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.examination.repair import repaired
 from hangtime.solver.doctor.figure import figure_of
@@ -220,12 +221,23 @@ def test_who_is_upside_down_in_the_motion_alone_is_set_upright() -> None:
     assert found.remedy == Repairs(up=UpAxis.MINUS_Z)
 
 
+def turned_about_the_toes(degrees: np.ndarray) -> Recording:
+    """The first frame's pose, turned about the axis from side to side, by so much in each frame."""
+    still = jump().heads[0]
+    toes = still[figure().of(Part.TOE)].mean(axis=0)
+    turns = axis_rotation(0, np.radians(degrees))
+    heads = toes + np.einsum("tij,bj->tbi", turns, still - toes)
+    return replace(jump(), heads=heads, rotations=turns[:, None] @ jump().rotations[:1])
+
+
 def test_who_does_push_ups_lies_in_truth() -> None:
     """On the toes, which are lowest, and along the figure the last, all the while."""
-    times, still = jump().times, jump().heads[0]
-    toes = still[figure().of(Part.TOE)].mean(axis=0)
-    slopes = np.radians(80.0 + 10.0 * np.sin(2.0 * np.pi * times))
-    turns = axis_rotation(0, slopes)
-    heads = toes + np.einsum("tij,bj->tbi", turns, still - toes)
-    lying = replace(jump(), heads=heads, rotations=turns[:, None] @ jump().rotations[:1])
+    lying = turned_about_the_toes(80.0 + 10.0 * np.sin(2.0 * np.pi * jump().times))
     assert find_up(lying, figure()) is None
+
+
+def test_who_hangs_by_the_feet_and_swings_is_upside_down_in_truth() -> None:
+    """The feet keep their place and the hands go, as of a turned object, but above the floor."""
+    swings = 180.0 + 30.0 * np.sin(2.0 * np.pi * 0.35 * jump().times)
+    hanging = turned_about_the_toes(swings)
+    assert find_up(replace(hanging, heads=hanging.heads + [0.0, 0.0, 2.2]), figure()) is None
