@@ -16,9 +16,9 @@ JUMP = np.radians(20.0)  # from a frame to the next; at 24 a second no joint lea
 # at rest and none is far from it, and then a part of all jump. Recordings' own frames have 0.3 of
 # them at rest, and none jumps at the beginning.
 MOST, NEAR, PART = 0.8, np.radians(30.0), 0.2
-# Others put a T pose before a motion whose rest hangs the arms, with a wrist or the head off by some
-# degrees: joints beyond TURNED are alike in pairs, two thirds of all are at rest. Of those that are
-# not turned 0.63 and more leave such a pose at once; where arms alone are keyed in steps none does.
+# Others put a T pose before a motion whose rest hangs the arms, with a wrist or the head off by
+# some degrees: joints beyond TURNED are alike in pairs, two thirds of all are at rest. Of those not
+# turned 0.63 and more leave such a pose at once; where arms alone are keyed in steps none does.
 TURNED, ALIKE, LEAST, LEAVE = np.radians(10.0), np.radians(5.0), 0.65, 0.5
 
 
@@ -50,9 +50,9 @@ def last_bind_frames(recording: Recording) -> int:
 
 
 def _spread_frames(away: FloatArray, local: FloatArray) -> int:
-    """Likewise of a T pose where the rest hangs the arms: a few joints are far from their rest, each
-    as far as another one, and jump together as most others leave theirs. away: (T, J) rad. local:
-    (T, J, 3, 3)."""
+    """Likewise of a T pose where the rest hangs the arms: a few joints are far from their rest,
+    each as far as another one, and jump together as most others leave theirs. away: (T, J) rad.
+    local: (T, J, 3, 3)."""
     turned = away[0] >= TURNED
     far = np.sort(away[0, turned])
     paired = len(far) % 2 == 0 and bool((np.diff(far)[::2] < ALIKE).all())

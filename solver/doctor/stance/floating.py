@@ -22,8 +22,8 @@ from .flat_feet import flat_feet
 # of honest feet by 1.5 cm; and how fast they move, where those on stairs stand still.
 RISES, RISES_BY = 0.03, 0.03  # m, and m/s
 STEP = 0.15  # m; what the ground's way leaves of such differences is a stair's, or a box's
-# Where feet stand shortly their velocities tell little of the way between, and it leaves as much on a
-# level floor. To be level it must then go by some 0.6 to 1.2 cm/s, rms, otherwise than without
+# Where feet stand shortly their velocities tell little of the way between, and it leaves as much on
+# a level floor. To be level it must then go by some 0.6 to 1.2 cm/s, rms, otherwise than without
 # these heights, and by 1.5 to 6 where one is a box's.
 PULLED = 0.013  # m/s
 OUTER = 10.0, 90.0  # %

@@ -244,4 +244,5 @@ def test_who_hangs_by_the_feet_and_swings_is_upside_down_in_truth() -> None:
     """The feet keep their place and the hands go, as of a turned object, but above the floor."""
     swings = 180.0 + 30.0 * np.sin(2.0 * np.pi * 0.35 * jump().times)
     hanging = turned_about_the_toes(swings)
-    assert find_up(replace(hanging, heads=hanging.heads + [0.0, 0.0, 2.2]), figure()) is None
+    lifted = hanging.heads + np.array([0.0, 0.0, 2.2])
+    assert find_up(replace(hanging, heads=lifted), figure()) is None
