@@ -67,7 +67,8 @@ def analysis_is_of(settings: HangtimeSettings, recording: Recording) -> bool:
         if settings.analysed == key:
             return True
         kept = MotionSketch.from_text(settings.analysed_motion)
-        as_asked = str(settings.analysed)[_DIGEST:] == key[_DIGEST:]
+        before = str(settings.analysed)  # "" where a sketch may be left, but no analysis
+        as_asked = before != "" and before[_DIGEST:] == key[_DIGEST:]
         if as_asked and kept is not None and kept.is_near(MotionSketch.of(recording)):
             return True
     return any(

@@ -275,9 +275,8 @@ def start_from_result(armature: bpy.types.Object, result: bpy.types.Action) -> N
     rows_named(settings.stances, ())
     _drop_constraints(armature, settings)
     forget(armature)
-    settings.analysed = settings.analysed_contacts = settings.unseen = settings.fit_quality = (
-        settings.status
-    ) = ""
+    settings.analysed = settings.analysed_motion = settings.analysed_contacts = ""
+    settings.unseen = settings.fit_quality = settings.status = ""
     result.use_fake_user = True
     show(armature, result)
 

@@ -20,6 +20,7 @@ from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.repairs.analysis_key import analysis_is_of, analysis_key
 from hangtime.bridge.rows.phases import phases_of
 from hangtime.operators.solve.adapt import read_wanted
+from hangtime.solver.analysis.motion_sketch import MotionSketch
 from hangtime.solver.data.recording import POSE_TOLERANCE
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.blender.helpers.actions import curves_of
@@ -328,6 +329,15 @@ def test_edit_mode_and_back_needs_no_analysis(analysed: bpy.types.Object) -> Non
     for mode in ("EDIT", "OBJECT"):
         bpy.ops.object.mode_set(mode=mode)
     assert analysis_is_of(analysed.hangtime, complete(read_wanted(analysed)))
+
+
+def test_a_sketch_that_is_left_is_no_analysis(analysed: bpy.types.Object) -> None:
+    """As where the next results are made from a result, whose contacts are to be found anew."""
+    settings = analysed.hangtime
+    settings.use_range = False
+    read = complete(read_wanted(analysed))
+    settings.analysed, settings.analysed_motion = "", MotionSketch.of(read).text
+    assert not analysis_is_of(settings, read)
 
 
 @pytest.mark.slow
