@@ -47,8 +47,8 @@ class CollectingTime:
 
 @dataclass(frozen=True)
 class PageTime:
-    """Of a page in the browser, s: until something is seen, until the table is there, and the
-    slowest of some filters."""
+    """Of a page in the browser, s: until something is seen, until the table is there (either may
+    come first), and the slowest of some filters."""
 
     first_paint: float
     ready: float

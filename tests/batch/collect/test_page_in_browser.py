@@ -347,5 +347,5 @@ def contrast(one: str, other: str) -> float:
 @pytest.mark.usefixtures("_installed")
 def test_how_soon_a_page_is_there_and_filters_can_be_measured(large: Path) -> None:
     told = measure_page(large / "index.html")
-    assert 0.0 < told.first_paint <= told.ready
-    assert told.filter > 0.0
+    # In no order: a loaded machine may paint only after the table is there.
+    assert min(told.first_paint, told.ready, told.filter) > 0.0
