@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
-from itertools import groupby, pairwise
+from itertools import count, groupby, pairwise
 
 from ..arrays import FloatArray
 
@@ -153,6 +153,11 @@ class Phase:
         """Such as "flight 1"."""
         return f"{self.kind.value} {self.number}"
 
+    def overlaps(self, other: "Phase") -> bool:
+        """Whether both are of one kind and share some time."""
+        together = min(self.end, other.end) > max(self.start, other.start)
+        return self.kind is other.kind and together
+
 
 def is_phase_name(name: str) -> bool:
     """Whether a name is read as that of a phase, whatever its capitals and spaces."""
@@ -170,15 +175,15 @@ class ContactSchedule:
 
     unseen: intervals without a contact in which the body does not fall, so something that the
     recording does not show carries it (a box, a rail, a drifting floor): they are not flights.
-    counted: how many flights, and ground phases, come before it in the schedule that it is part of,
-    whose names its phases keep.
+    numbers: of its phases in order, as the schedule that it was made of has them; where there are
+    fewer or more phases than these, and without any, each kind is counted on from the first.
     """
 
     contacts: tuple[Contact, ...]
     duration: float
     floor_m: float
     unseen: tuple[Interval, ...] = ()
-    counted: tuple[int, int] = (0, 0)
+    numbers: tuple[int, ...] = ()
 
     @property
     def flights(self) -> tuple[Interval, ...]:
@@ -190,15 +195,31 @@ class ContactSchedule:
     @property
     def phases(self) -> tuple[Phase, ...]:
         """Alternating ground and flight phases that cover [0, duration]."""
-        flights, (flown, stood) = self.flights, self.counted
+        flights = self.flights
         ground = gaps(((f.start, f.end) for f in flights), self.duration)
-        named = [
-            Phase(PhaseKind.FLIGHT, i, f.start, f.end) for i, f in enumerate(flights, flown + 1)
-        ]
-        named += [
-            Phase(PhaseKind.GROUND, i, g.start, g.end) for i, g in enumerate(ground, stood + 1)
-        ]
-        return tuple(sorted(named, key=lambda p: p.start))
+        spans = [(f, PhaseKind.FLIGHT) for f in flights] + [(g, PhaseKind.GROUND) for g in ground]
+        spans.sort(key=lambda each: each[0].start)
+        numbers = self._numbers([kind for _, kind in spans])
+        return tuple(
+            Phase(kind, number, span.start, span.end)
+            for (span, kind), number in zip(spans, numbers, strict=True)
+        )
+
+    def _numbers(self, kinds: Sequence[PhaseKind]) -> Sequence[int]:
+        """Of phases of these kinds, in order."""
+        if len(self.numbers) == len(kinds):
+            return self.numbers
+        first = dict(reversed(list(zip(kinds, self.numbers, strict=False))))
+        counts = {kind: count(first.get(kind, 1)) for kind in PhaseKind}
+        return [next(counts[kind]) for kind in kinds]
+
+    def named_as(self, other: "ContactSchedule") -> "ContactSchedule":
+        """The schedule, each of its phases with the name of the first one of another schedule, on
+        the same time, that it has a part in; all are counted anew where two would have the same."""
+        phases, known = self.phases, other.phases
+        shared = [next((k for k in known if k.overlaps(phase)), phase) for phase in phases]
+        distinct = len({phase.name for phase in shared}) == len(phases)
+        return replace(self, numbers=tuple(p.number for p in shared) if distinct else ())
 
     @property
     def stances(self) -> tuple[Phase, ...]:
@@ -239,14 +260,12 @@ class ContactSchedule:
             )
             contacts.append(replace(contact, start=first, end=last, rise=rise))
         unseen = (Interval(*inside(u.start, u.end)) for u in self.unseen)
-        before = [phase for phase in self.phases if phase.end <= start]
-        flown = sum(phase.kind is PhaseKind.FLIGHT for phase in before)
         return replace(
             self,
             contacts=tuple(sorted(contacts, key=lambda c: (c.start, c.point))),
             duration=end - start,
             unseen=tuple(u for u in unseen if u.end > u.start),
-            counted=(self.counted[0] + flown, self.counted[1] + len(before) - flown),
+            numbers=tuple(p.number for p in self.phases if p.start < end and p.end > start),
         )
 
     def of_phase(self, phase: Phase) -> tuple[Contact, ...]:

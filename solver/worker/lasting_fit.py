@@ -43,10 +43,11 @@ def lasting_fit(
 
     rides: of a schedule's contacts. good_enough: m by which contacts that cannot be held exactly
     may miss their places before any is let go. Of a motion that repeats nothing is let go: as `fit`
-    has it.
+    has it. Phases keep their names, those that are joined the first one's.
     """
     let_go: list[LetGo] = []
-    flights = [phase for phase in schedule.phases if phase.kind is PhaseKind.FLIGHT]
+    asked = schedule
+    flights = [phase for phase in asked.phases if phase.kind is PhaseKind.FLIGHT]
     for remaining in reversed(range(MAX_ROUNDS + 1)):
         found = fit(
             performance, schedule, periodic=periodic, rides=rides(schedule), progress=progress
@@ -68,9 +69,9 @@ def lasting_fit(
     doubted = () if periodic or not found.solved else _doubted(found)
     if doubted:
         found = _nearer(found, _unseen_too(schedule, doubted), rides, progress)
-    unseen = found.schedule.unseen
-    carried = tuple(flight for flight in flights if any(_is_mostly_in(flight, u) for u in unseen))
-    return replace(found, let_go=tuple(let_go), carried=carried)
+    named = found.schedule.named_as(asked)
+    carried = tuple(f for f in flights if any(_is_mostly_in(f, u) for u in named.unseen))
+    return replace(found, schedule=named, let_go=tuple(let_go), carried=carried)
 
 
 def _is_mostly_in(flight: Phase, unseen: Interval) -> bool:

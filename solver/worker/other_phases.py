@@ -1,7 +1,7 @@
 """What a problem names by phase, on a fit whose phases are others than the analysis's.
 
-A fit that lets contacts go, or doubts a flight, joins phases and counts those behind anew. Who
-asked for "ground 2" saw the analysis: the same contacts and instants are meant.
+A fit that lets contacts go, or doubts a flight, joins phases; those that it has whole keep their
+names. Who asked for "ground 2" saw the analysis: the same contacts and instants are meant.
 """
 
 from collections.abc import Sequence

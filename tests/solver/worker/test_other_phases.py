@@ -28,8 +28,28 @@ def found() -> ContactSchedule:
 
 
 def doubted() -> ContactSchedule:
-    """The same, the first flight carried by something unseen: ground 3 is ground 2 now."""
-    return replace(found(), unseen=(Interval(0.5, 0.8),))
+    """The same, the first flight carried by something unseen: ground 2 is part of ground 1."""
+    return replace(found(), unseen=(Interval(0.5, 0.8),)).named_as(found())
+
+
+def phase_names(schedule: ContactSchedule) -> list[str]:
+    return [phase.name for phase in schedule.phases]
+
+
+def test_phases_behind_one_that_is_carried_keep_their_names() -> None:
+    assert phase_names(doubted()) == ["ground 1", "flight 2", "ground 3"]
+
+
+def test_they_keep_them_also_where_the_schedule_is_cut() -> None:
+    late = doubted().part(1.0, 2.0)
+    assert phase_names(late) == ["ground 1", "flight 2", "ground 3"]
+    assert phase_names(found().part(1.0, 2.0)) == ["ground 2", "flight 2", "ground 3"]
+
+
+def test_where_a_phase_is_divided_all_are_counted_anew() -> None:
+    whole, divided = found(), replace(found(), contacts=found().contacts[::2])
+    assert phase_names(whole.named_as(divided)) == phase_names(whole)
+    assert phase_names(divided.named_as(whole)) == ["ground 1", "flight 1", "ground 3"]
 
 
 def name(number: int) -> str:
@@ -54,7 +74,7 @@ def test_a_pin_stays_with_its_contacts() -> None:
     first, middle, last = mapped(MotionProblem(pins=pins), doubted()).pins
     assert (first.phase, first.touching) == ("ground 1", (name(1),))
     assert (middle.phase, middle.touching) == ("ground 1", (name(2),))
-    assert (last.phase, last.touching) == ("ground 2", ())
+    assert (last.phase, last.touching) == ("ground 3", ())
 
 
 def test_a_pin_of_what_was_let_go_is_told() -> None:
@@ -85,11 +105,11 @@ def test_requests_stay_with_their_instants() -> None:
     requests = Requests(angles=limits, lifts=(Lift("Lift", "ground 3"),))
     told = mapped(MotionProblem(requests=requests), doubted()).requests
     first, rate = float(recording().frames[0]), recording().rate
-    joined, counted = (limit.when for limit in told.angles)
+    joined, kept = (limit.when for limit in told.angles)
     assert joined.phase is None
     assert joined.frames == pytest.approx((first + 0.8 * rate, first + 1.3 * rate))
-    assert counted == When("flight 1")
-    assert told.lifts[0].phase == "ground 2"
+    assert kept == When("flight 2")
+    assert told.lifts[0].phase == "ground 3"
 
 
 def test_what_is_lifted_stays_the_same_where_its_phase_is_joined() -> None:
