@@ -7,7 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from ...solver.data.recording import Recording
-from .damages import DAMAGES, Damage, Damaged, noisy, sliding
+from .damages.damage import Damage, Damaged
+from .damages.every import DAMAGES
+from .damages.poses import noisy
+from .damages.whole_body import sliding
 
 
 def both(first: Damage, second: Damage) -> Damage:

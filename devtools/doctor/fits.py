@@ -23,7 +23,8 @@ from ...solver.fitting.fit import Fit
 from ...solver.results.certificate import loaded_drifts
 from ...solver.results.report import fit_quality
 from ...solver.worker.pipeline import StageClock, fit_subject, measure, no_fit
-from .damages import DAMAGES, Damage
+from .damages.damage import Damage
+from .damages.every import DAMAGES
 
 NOISE = "30 Hz, 3 mm and 1° noise"
 WITHOUT_FLIGHT = "part without flight"

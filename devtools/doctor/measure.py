@@ -13,7 +13,7 @@ from ...solver.doctor.examination.diagnose import diagnose
 from ...solver.doctor.examination.repair import repaired
 from ...solver.doctor.falls import Falls, falls_of
 from ...solver.doctor.finding import FindingKind
-from .damages import Damage
+from .damages.damage import Damage
 
 # What a clip truly has, undamaged, is no false alarm: the dancer's hips rise by 0.12 m in 50 ms and
 # stop at once, which at 30 Hz is a jump; and afterwards the lowest foot stands 4 to 16 cm up, until

@@ -18,7 +18,7 @@ machine with 2 cores) and wrote this page; `DIR/figures.json` has every number.
 """
 NOTES = """
 The clips of `examples/recordings` (the first 5 s, from where the rest pose ends that some begin
-with) are damaged in the ways of `devtools/doctor/damages.py`, diagnosed and repaired. *Found*:
+with) are damaged in the ways of `devtools/doctor/damages`, diagnosed and repaired. *Found*:
 named rightly, of two damages both. *Off*: rms distance of all joints from the undamaged clip at
 the same frame, before and after all remedies that the doctor offers, its mistaken ones too; of a
 clock that is wrong no joint is off. *Scale off*: of the factor of time or

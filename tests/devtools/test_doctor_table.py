@@ -1,7 +1,7 @@
 """The doctor's table: its figures, and which of them end the command with 1."""
 
 import pytest
-from hangtime.devtools.doctor.damages import DAMAGES
+from hangtime.devtools.doctor.damages.every import DAMAGES
 from hangtime.devtools.doctor.fits import (
     NOISE,
     WITHOUT_FLIGHT,

@@ -11,7 +11,7 @@ from typing import get_type_hints
 
 import hangtime.solver
 import pytest
-from hangtime.devtools.doctor.damages import stretched
+from hangtime.devtools.doctor.damages.poses import stretched
 from hangtime.operators.words.failure_text import failure_of
 from hangtime.operators.words.messages import sentence, together
 from hangtime.operators.words.templates import MISSED, OUTCOMES, TEMPLATES, faults, outcomes, rigs

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hangtime.bridge.formats.bvh import read_bvh
 from hangtime.bridge.formats.motion_clip import to_recording
-from hangtime.devtools.doctor.damages import at_rate
+from hangtime.devtools.doctor.damages.damage import at_rate
 from hangtime.devtools.filters import low_pass
 from hangtime.devtools.recordings import HOPS
 from hangtime.solver.analysis.analyse import analyse

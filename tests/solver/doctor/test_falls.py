@@ -4,11 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hangtime.devtools.doctor.damages import (
-    levelled,
-    sized,
-    slowed,
-)
+from hangtime.devtools.doctor.damages.clock import slowed
+from hangtime.devtools.doctor.damages.whole_body import levelled, sized
 from hangtime.solver.analysis.analyse import agreed_rate
 from hangtime.solver.analysis.performance import find_contacts, perform
 from hangtime.solver.body.anatomy import Part, Side

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hangtime.devtools.doctor.damages import at_rate, floating, swaying
+from hangtime.devtools.doctor.damages.damage import at_rate
+from hangtime.devtools.doctor.damages.whole_body import floating, swaying
 from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.problem import Mend, MotionProblem

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hangtime.devtools.doctor.combined import both
-from hangtime.devtools.doctor.damages import (
-    Damage,
+from hangtime.devtools.doctor.damages.damage import Damage
+from hangtime.devtools.doctor.damages.poses import noisy
+from hangtime.devtools.doctor.damages.whole_body import (
     in_place,
-    noisy,
     raised,
     rising,
     sliding,

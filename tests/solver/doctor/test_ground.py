@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from hangtime.devtools.doctor.damages import raised, rising, sliding
+from hangtime.devtools.doctor.damages.whole_body import raised, rising, sliding
 from hangtime.solver.analysis.performance import perform
 from hangtime.solver.body.character import build_character
 from hangtime.solver.data.recording import Recording

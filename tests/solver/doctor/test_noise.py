@@ -2,10 +2,8 @@
 
 import numpy as np
 import pytest
-from hangtime.devtools.doctor.damages import (
-    at_rate,
-    noisy,
-)
+from hangtime.devtools.doctor.damages.damage import at_rate
+from hangtime.devtools.doctor.damages.poses import noisy
 from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.data.problem import Mend
 from hangtime.solver.data.recording import Recording

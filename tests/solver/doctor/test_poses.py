@@ -4,25 +4,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hangtime.devtools.doctor.damages import (
-    Damage,
+from hangtime.devtools.doctor.damages.clock import dropped, gap, held, slowed
+from hangtime.devtools.doctor.damages.damage import Damage
+from hangtime.devtools.doctor.damages.poses import (
     begun_at_rest,
     burst,
-    dropped,
     ended_at_rest,
     exchanged,
     flipped,
-    gap,
-    held,
-    joined,
-    lain,
-    leapt,
     noisy,
-    raised,
-    slowed,
     spiked,
     stretched,
 )
+from hangtime.devtools.doctor.damages.whole_body import joined, lain, leapt, raised
 from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.faults import UnseenSupport

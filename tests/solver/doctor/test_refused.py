@@ -4,9 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hangtime.devtools.doctor.damages import (
-    slowed,
-)
+from hangtime.devtools.doctor.damages.clock import slowed
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.data.faults import (
     ClipTooShort,

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from hangtime.devtools.doctor.damages import ended_at_rest, noisy, rising, sliding
+from hangtime.devtools.doctor.damages.poses import ended_at_rest, noisy
+from hangtime.devtools.doctor.damages.whole_body import rising, sliding
 from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.data.faults import NotBetweenFrames, NothingLeft
 from hangtime.solver.data.problem import Mend, MotionProblem

@@ -1,7 +1,7 @@
 """A flight that was retimed among others is told with its frames, and is carried by nothing."""
 
 import pytest
-from hangtime.devtools.doctor.damages import ramped
+from hangtime.devtools.doctor.damages.clock import ramped
 from hangtime.operators.words.doctor_text import finding_sentence
 from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.solver.data.recording import Recording

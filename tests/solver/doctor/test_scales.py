@@ -3,7 +3,8 @@
 from functools import cache
 
 import pytest
-from hangtime.devtools.doctor.damages import joined, sized, slowed
+from hangtime.devtools.doctor.damages.clock import slowed
+from hangtime.devtools.doctor.damages.whole_body import joined, sized
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.examination.diagnose import Diagnosis, diagnose
 from hangtime.solver.doctor.examination.repair import repaired

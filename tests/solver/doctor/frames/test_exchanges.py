@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from hangtime.devtools.doctor.damages import exchanged, noisy
+from hangtime.devtools.doctor.damages.poses import exchanged, noisy
 from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.data.faults import UnseenSupport
 from hangtime.solver.data.problem import Mend, MotionProblem, Unseen

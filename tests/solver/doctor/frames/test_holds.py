@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hangtime.devtools.doctor.damages import at_rate, frozen
+from hangtime.devtools.doctor.damages.clock import frozen
+from hangtime.devtools.doctor.damages.damage import at_rate
 from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.examination.diagnose import Diagnosis, diagnose

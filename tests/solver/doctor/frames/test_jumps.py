@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from hangtime.devtools.doctor.damages import ragged
+from hangtime.devtools.doctor.damages.poses import ragged
 from hangtime.solver.analysis.performance import perform
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.doctor.examination.diagnose import diagnose

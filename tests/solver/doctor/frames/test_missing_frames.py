@@ -4,9 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hangtime.devtools.doctor.damages import (
-    gap,
-)
+from hangtime.devtools.doctor.damages.clock import gap
 from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.data.faults import (
     NotBetweenFrames,

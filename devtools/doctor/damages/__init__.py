@@ -1,0 +1,1 @@
+"""Ways in which recordings are damaged, each at several strengths."""
