@@ -22,7 +22,8 @@ from ..solver.objectives.motion_metric import motion_metric
 from ..solver.optimisation.sqp import FeasibleSet, Outcome, restore
 from ..solver.stages.implicit import adapt
 from ..solver.transcription.motion import Motion
-from ..solver.worker.pipeline import StageClock, Subject, fit_possible, measure, solve
+from ..solver.worker.pipeline import Subject, fit_possible, measure, solve
+from ..solver.worker.stage_clock import StageClock
 from .recordings import hops, recording
 from .tables import Row
 from .timing import REPEATS, memory, processor

@@ -15,15 +15,10 @@ import numpy as np
 from ...solver.data.recording import digest
 from ...solver.data.requests import Requests
 from ...solver.fitting.fit import Fit
-from ...solver.worker.pipeline import (
-    FITTING,
-    StageClock,
-    Subject,
-    fit_subject,
-    unfitted,
-)
+from ...solver.worker.pipeline import FITTING, Subject, fit_subject, unfitted
 from ...solver.worker.possible import check_requested
 from ...solver.worker.recent_fits import RecentFits
+from ...solver.worker.stage_clock import StageClock
 from ...solver.worker.unpickling import Unreadable, unpickled
 from ..records.aside import written_aside
 from ..records.locks import held

@@ -21,7 +21,8 @@ from ...solver.fitting.fit import Fit
 from ...solver.results.npz_export import save
 from ...solver.stages.implicit import Adaptation
 from ...solver.transcription.motion import Motion
-from ...solver.worker.pipeline import StageClock, Subject, adapt_fit, fit_subject, measure
+from ...solver.worker.pipeline import Subject, adapt_fit, fit_subject, measure
+from ...solver.worker.stage_clock import StageClock
 from ..checks.mujoco_check import check_motion, check_npz
 from ..environment.problem import SetUpError
 from ..peers import ipopt_peer

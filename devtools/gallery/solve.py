@@ -12,14 +12,8 @@ from ...solver.data.solver_options import Method
 from ...solver.fitting.fit import Fit
 from ...solver.results.npz_export import save
 from ...solver.stages.implicit import Adaptation
-from ...solver.worker.pipeline import (
-    AdaptationResult,
-    StageClock,
-    Subject,
-    adapt_fit,
-    fit_subject,
-    measure,
-)
+from ...solver.worker.pipeline import AdaptationResult, Subject, adapt_fit, fit_subject, measure
+from ...solver.worker.stage_clock import StageClock
 from ..processes import dump, undump
 from .jobs import Json, Result, load, write_json
 

@@ -21,7 +21,8 @@ from ...bridge.recipe.keys import KeyOptions
 from ...bridge.rows.choices import KeyChoice
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import Recording
-from ...solver.worker.pipeline import StageClock, measure, solve
+from ...solver.worker.pipeline import measure, solve
+from ...solver.worker.stage_clock import StageClock
 from ..figures.blender import drift, open_clip
 from ..figures.clips import CLIPS, Clip
 from ..figures.limits import Figure, figure, table, write

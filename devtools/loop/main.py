@@ -20,7 +20,8 @@ from ...bridge.loops.write_loop import Loop, write_loop
 from ...bridge.rows.choices import LoopRoot
 from ...solver.data.recording import BEYOND
 from ...solver.loops.loop_report import loop_report
-from ...solver.worker.pipeline import AdaptationResult, StageClock, measure, solve
+from ...solver.worker.pipeline import AdaptationResult, measure, solve
+from ...solver.worker.stage_clock import StageClock
 from ..figures.limits import Figure, figure, table, write
 from ..recordings import find
 from .clips import RUNS, Run

@@ -9,7 +9,8 @@ from ...solver.data.problem import OffsetAxes, Pin
 from ...solver.data.requests import Requests
 from ...solver.data.solver_options import Method, ObjectiveKind, SolverOptions
 from ...solver.fitting.fit import Fit
-from ...solver.worker.pipeline import StageClock, Subject, adapt_fit, fit_subject, measure
+from ...solver.worker.pipeline import Subject, adapt_fit, fit_subject, measure
+from ...solver.worker.stage_clock import StageClock
 from ..processes import dump, undump
 from .jobs import SolvedJump, SolvedSource, SourceTask
 from .jump_frame import JumpFrame, jump_frame, landing_phase, longest_flight

@@ -21,7 +21,8 @@ from ...solver.data.solver_options import HumanRanges, SolverOptions
 from ...solver.fitting.fit import Fit
 from ...solver.results.joint_report import joint_turns
 from ...solver.stages.implicit import Adaptation
-from ...solver.worker.pipeline import StageClock, Subject, adapt_fit, fit_subject, measure
+from ...solver.worker.pipeline import Subject, adapt_fit, fit_subject, measure
+from ...solver.worker.stage_clock import StageClock
 from ..environment.virtual_environment import ROOT
 from ..pairs.clips import RATE, Jump, broad_jumps, hops
 from ..pairs.jump_frame import longest_flight

@@ -16,7 +16,8 @@ from ...solver.data.faults import Fault
 from ...solver.skeleton.mapping import guess_bones
 from ...solver.skeleton.parts import KEYS, Part, Side, label_of
 from ...solver.skeleton.tree import tree_of
-from ...solver.worker.pipeline import StageClock, measure, solve
+from ...solver.worker.pipeline import measure, solve
+from ...solver.worker.stage_clock import StageClock
 from ..figures.clips import EDITS
 from ..processes import dump
 from .actor import CLIP, JOINTS, Actor, actor

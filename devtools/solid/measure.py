@@ -12,14 +12,8 @@ from ...operators.headless.quiet import quiet
 from ...solver.data.faults import Fault
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.fitting.fit import Fit
-from ...solver.worker.pipeline import (
-    AdaptationResult,
-    StageClock,
-    Subject,
-    adapt_fit,
-    fit_subject,
-    measure,
-)
+from ...solver.worker.pipeline import AdaptationResult, Subject, adapt_fit, fit_subject, measure
+from ...solver.worker.stage_clock import StageClock
 from ..checks.joint_ranges import worst_joint
 from ..checks.mujoco_check import check_motion
 from ..checks.penetrations import solid_check

@@ -12,13 +12,8 @@ from ...solver.data.recording import Recording
 from ...solver.data.reports.recording import Origin
 from ...solver.data.status import Status
 from ...solver.fitting.fit import Fit
-from ...solver.worker.pipeline import (
-    AdaptationResult,
-    StageClock,
-    adapt_fit,
-    fit_subject,
-    no_fit,
-)
+from ...solver.worker.pipeline import AdaptationResult, adapt_fit, fit_subject, no_fit
+from ...solver.worker.stage_clock import StageClock
 from ..processes import dump
 from ..recordings import read
 from .result import EditEnding, EditResult

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 from ...solver.data.problem import MotionProblem
 from ...solver.fitting.fit import Fit
-from ...solver.worker.pipeline import StageClock, fit_subject, measure, no_fit
+from ...solver.worker.pipeline import fit_subject, measure, no_fit
+from ...solver.worker.stage_clock import StageClock
 from ..recordings import HOPS, JUMP, find, read
 
 

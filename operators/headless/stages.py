@@ -9,7 +9,7 @@ from typing import TextIO
 from ...solver.data.reports.report import StageReport
 from ...solver.optimisation.sqp import Step
 from ...solver.transcription.motion import Motion
-from ...solver.worker.pipeline import StageClock
+from ...solver.worker.stage_clock import StageClock
 
 WIDTH = 24
 

@@ -11,9 +11,7 @@ report and the adaptation itself.
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -52,9 +50,9 @@ from ..doctor.examination.mistaken_support import with_cause
 from ..doctor.examination.repair import as_asked, floated
 from ..doctor.examination.suspects import damages_of
 from ..fitting.fit import Fit
+from ..fitting.lasting_fit import lasting_fit
 from ..loops.find_cycle import check_loop, find_cycle
 from ..loops.loop_report import loop_report
-from ..optimisation.sqp import Step
 from ..results.certificate import LIMITS
 from ..results.joint_report import joint_turns
 from ..results.last_stance import last_stance_move
@@ -69,35 +67,12 @@ from ..stages.implicit import Adaptation, adapt, unadapted
 from ..stages.platforms import recorded_rides
 from ..transcription.motion import Motion
 from .edited_part import edited_part
-from .lasting_fit import lasting_fit
 from .other_phases import on_phases_of
 from .possible import check_requested, stand_in
+from .stage_clock import StageClock
 
 APART, LEAST_SOUND = 0.1, 0.5  # s: about what cannot be held; of a part that is worth keeping
 FITTING, ADAPTING = "Fitting the physics", "Adapting"
-
-
-class StageClock:
-    """Observer of a run: times its stages. Others show the steps, or halt the run at one."""
-
-    def __init__(self) -> None:
-        self.done: list[StageReport] = []
-
-    @contextmanager
-    def stage(self, name: str) -> Iterator[None]:
-        """A stage of the run."""
-        began = time.perf_counter()
-        try:
-            yield
-        finally:
-            self.done.append(StageReport(name, time.perf_counter() - began))
-
-    def step(self, step: Step, motion: Motion) -> None:
-        """Hears of each step of the optimiser; what it raises ends the run (Stopped: with the
-        motion as it stands)."""
-
-    def ended(self, violation: float) -> None:
-        """Hears of the violation over its tolerance that a stage's last step left."""
 
 
 @dataclass(frozen=True)

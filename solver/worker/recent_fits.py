@@ -6,7 +6,8 @@ from collections import OrderedDict
 from collections.abc import Callable, Hashable
 
 from ..fitting.fit import Fit
-from .pipeline import FITTING, StageClock
+from .pipeline import FITTING
+from .stage_clock import StageClock
 
 
 class RecentFits:

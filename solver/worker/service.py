@@ -26,17 +26,7 @@ from ..results.unseen_support import fit_needs
 from ..stages.implicit import Adaptation
 from ..stages.interactive import Follower, change, pelvis_range
 from ..transcription.motion import Motion
-from .pipeline import (
-    ADAPTING,
-    StageClock,
-    Subject,
-    fit_possible,
-    fit_subject,
-    measure,
-    no_fit,
-    on_fit,
-    solve,
-)
+from .pipeline import ADAPTING, Subject, fit_possible, fit_subject, measure, no_fit, on_fit, solve
 from .progress import ProgressFraction
 from .protocol import (
     Adapted,
@@ -53,6 +43,7 @@ from .protocol import (
     RequestKind,
 )
 from .recent_fits import RecentFits
+from .stage_clock import StageClock
 
 MOST_FITS = 3
 EXAMINING = RequestKind.EXAMINE.value  # the one stage of an examination

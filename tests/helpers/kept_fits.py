@@ -5,7 +5,8 @@ from dataclasses import replace
 from hangtime.solver.data.recording import digest
 from hangtime.solver.data.requests import Requests
 from hangtime.solver.fitting.fit import Fit
-from hangtime.solver.worker.pipeline import FITTING, StageClock, Subject, fit_subject
+from hangtime.solver.worker.pipeline import FITTING, Subject, fit_subject
+from hangtime.solver.worker.stage_clock import StageClock
 
 
 class KeptFits:

@@ -18,14 +18,8 @@ from ....solver.data.reports.recording import Origin
 from ....solver.data.reports.report import as_json
 from ....solver.data.solver_options import ObjectiveKind, ReductionKind
 from ....solver.fitting.fit import Fit
-from ....solver.worker.pipeline import (
-    AdaptationResult,
-    StageClock,
-    Subject,
-    fit_subject,
-    measure,
-    solve,
-)
+from ....solver.worker.pipeline import AdaptationResult, Subject, fit_subject, measure, solve
+from ....solver.worker.stage_clock import StageClock
 from ...recordings import HELD, read
 from ..protocol.case import Changed, Family, HostileCase
 from ..protocol.patience import at_most

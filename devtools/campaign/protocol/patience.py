@@ -8,7 +8,7 @@ import numpy as np
 
 from ....solver.optimisation.sqp import Step
 from ....solver.transcription.motion import Motion
-from ....solver.worker.pipeline import StageClock
+from ....solver.worker.stage_clock import StageClock
 
 
 class _Enough(Exception):

@@ -29,7 +29,8 @@ from ....solver.data.contacts import Contact
 from ....solver.data.faults import Fault
 from ....solver.data.recording import Recording
 from ....solver.numerics.rotations import rotation_matrix, rotation_vector
-from ....solver.worker.pipeline import AdaptationResult, StageClock, measure, solve
+from ....solver.worker.pipeline import AdaptationResult, measure, solve
+from ....solver.worker.stage_clock import StageClock
 from ...figures.clips import EDITS
 from ...processes import dump
 from ..actor import CLIP

@@ -28,7 +28,8 @@ from hangtime.solver.data.recording import Bone, PoseTrack, Recording
 from hangtime.solver.data.reports.jumps import TimeMap
 from hangtime.solver.numerics.rotations import axis_rotation, rotation_vector
 from hangtime.solver.solid.flesh import flesh_of
-from hangtime.solver.worker.pipeline import StageClock, measure, solve
+from hangtime.solver.worker.pipeline import measure, solve
+from hangtime.solver.worker.stage_clock import StageClock
 from hangtime.tests.blender.helpers.actions import curves_of
 from hangtime.tests.blender.helpers.skins import make_skin
 

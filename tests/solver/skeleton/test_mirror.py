@@ -12,7 +12,8 @@ from hangtime.solver.data.faults import NotMirrored
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.skeleton.mirror import mirrored, other_side
-from hangtime.solver.worker.pipeline import StageClock, Subject, fit_subject, measure, solve
+from hangtime.solver.worker.pipeline import Subject, fit_subject, measure, solve
+from hangtime.solver.worker.stage_clock import StageClock
 from hangtime.tests.helpers.clips import mocap_path
 
 FRAMES = (20.0, 190.0)

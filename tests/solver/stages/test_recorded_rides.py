@@ -17,7 +17,8 @@ from hangtime.solver.data.scene import SceneObject, SceneRole, SteadyMotion
 from hangtime.solver.data.solver_options import HumanRanges, SolverOptions
 from hangtime.solver.fitting.fit import Fit
 from hangtime.solver.stages.implicit import adapt
-from hangtime.solver.worker.pipeline import StageClock, fit_subject, measure
+from hangtime.solver.worker.pipeline import fit_subject, measure
+from hangtime.solver.worker.stage_clock import StageClock
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, fitted_hop, frames_of, hop
 

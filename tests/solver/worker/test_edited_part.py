@@ -10,7 +10,8 @@ from hangtime.solver.analysis.pinned_places import chosen_contacts, phase_of
 from hangtime.solver.data.contacts import PhaseKind
 from hangtime.solver.data.problem import ContactEdit, Mend, MotionProblem, Pin
 from hangtime.solver.data.requests import BodyChange, Requests
-from hangtime.solver.worker.pipeline import StageClock, Subject, measure, solve
+from hangtime.solver.worker.pipeline import Subject, measure, solve
+from hangtime.solver.worker.stage_clock import StageClock
 from hangtime.tests.helpers.clips import load_recording
 
 FURTHER = (0.3, 0.0, 0.0)

@@ -35,15 +35,9 @@ from hangtime.solver.data.requests import (
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.solver_options import HumanRanges, SolverOptions
 from hangtime.solver.fitting.fit import Fit
-from hangtime.solver.worker.pipeline import (
-    ADAPTING,
-    StageClock,
-    Subject,
-    adapt_fit,
-    measure,
-    solve,
-)
+from hangtime.solver.worker.pipeline import ADAPTING, Subject, adapt_fit, measure, solve
 from hangtime.solver.worker.possible import check_requested, stand_in
+from hangtime.solver.worker.stage_clock import StageClock
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, fitted_hop, frames_of, hop
 

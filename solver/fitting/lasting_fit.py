@@ -15,10 +15,10 @@ from ..analysis.performance import Performance, leans, snap_tolerance
 from ..data.contacts import ContactSchedule, Interval, Phase, PhaseKind, gaps
 from ..data.row_kinds import RowKind
 from ..doctor.local_poses import runs
-from ..fitting.fit import Fit, LetGo, fit
 from ..optimisation.sqp import Progress
 from ..transcription.ride import Ride
 from ..transcription.rows import Rows
+from .fit import Fit, LetGo, fit
 
 MAX_ROUNDS = 6  # then everything is let go
 WORST_SHARE = 0.5  # of the worst contact's miss: who misses more is let go with it

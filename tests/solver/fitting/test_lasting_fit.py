@@ -21,21 +21,21 @@ from hangtime.solver.data.requests import PointRequest, Requests, When
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.traces import UNSEEN_SUPPORT
 from hangtime.solver.fitting.fit import Fit
+from hangtime.solver.fitting.lasting_fit import lasting_fit, leaning
 from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.solver.results.npz_export import save
 from hangtime.solver.results.report import fit_quality
 from hangtime.solver.results.unseen_support import fit_needs
 from hangtime.solver.transcription.motion import dynamics_residual
-from hangtime.solver.worker.lasting_fit import lasting_fit, leaning
 from hangtime.solver.worker.pipeline import (
     AdaptationResult,
-    StageClock,
     Subject,
     adapt_fit,
     fit_subject,
     measure,
     solve,
 )
+from hangtime.solver.worker.stage_clock import StageClock
 from hangtime.tests.helpers.clips import JUMP, load_recording
 from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, frames_of, hop
 
