@@ -18,13 +18,14 @@ from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
 from ..solve.adapt import ask_for, followed_problem, unanalysed
 from ..solve.common import failed, required_armature, said
-from ..solve.live import live, redraw_viewports, redraw_views
+from ..solve.live import clear_header, live, redraw_viewports, redraw_views
 from ..solve.session import Asked, session
 from ..words.report_text import deeper, higher
 from .mouse import BACK, CONFIRM, GIVEN, Press
 
 LOST = "no motion follows there; the ghost stays where it last could"
 ELSEWHERE = "Drag in a 3D viewport"
+TAKEN_AWAY = "The drag has ended: its armature is gone"
 LOOK_EVERY = 0.01  # s; a look costs little, and the ghost waits for the next one
 # s, at most, for which the first move of the mouse waits for its ghost, which mostly takes a third:
 # Blender draws then, and a ghost that comes later is seen a whole drawing later.
@@ -107,6 +108,20 @@ class FollowedDrag(PolledOperator):
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         if self not in session().running:
             return {"CANCELLED"}
+        goes_on = False
+        try:
+            if context.region_data is None:  # its viewport is gone, or another workspace is shown
+                return self._back()
+            result = self._react(context, event)
+            goes_on = True
+        except ReferenceError:  # a script took the armature away from under us
+            return self.refuse(TAKEN_AWAY)
+        finally:
+            if not goes_on:  # also after a mistake of ours, or every button stayed grey
+                self.leave()
+        return result
+
+    def _react(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         pressed = event.value == "PRESS"
         if event.type in BACK and pressed:
             return self._back()
@@ -128,7 +143,7 @@ class FollowedDrag(PolledOperator):
         return {"RUNNING_MODAL"}
 
     def cancel(self, _context: bpy.types.Context) -> None:
-        """Blender calls this when it opens another file or quits meanwhile."""
+        """Blender calls this when it opens another file, closes the window or quits meanwhile."""
         self.leave()
 
     def leave(self) -> None:
@@ -139,7 +154,7 @@ class FollowedDrag(PolledOperator):
             shared().drop()
             self._task.close()
             present(bpy.context.window_manager).event_timer_remove(self._timer)
-            self._area.header_text_set(None)
+            clear_header(self._area)
             redraw_viewports()
 
     @property

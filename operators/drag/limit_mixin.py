@@ -10,7 +10,7 @@ from ...bridge.properties.constraint import HangtimeConstraint
 from ...bridge.properties.settings import settings_of
 from ..operator_types import OperatorResult, PolledOperator
 from ..solve.common import EDIT_MODE, chosen_armature, required_armature
-from ..solve.live import redraw_viewports
+from ..solve.live import clear_header, redraw_viewports
 from .mouse import BACK, CONFIRM, GIVEN, Press
 
 KEYS = "Shift: finer · Ctrl: in steps of 5° · Esc: back"
@@ -73,7 +73,8 @@ class LimitDrag(PolledOperator):
             self._leave()
             return {"CANCELLED"}
         pressed = event.value == "PRESS"
-        if event.type in BACK and pressed:
+        gone = context.region_data is None  # its viewport, or another workspace is shown
+        if gone or (event.type in BACK and pressed):
             self.cancel(context)
             return {"CANCELLED"}
         released = event.type == "LEFTMOUSE" and event.value == "RELEASE"
@@ -95,7 +96,7 @@ class LimitDrag(PolledOperator):
         self._leave()
 
     def _leave(self) -> None:
-        self._area.header_text_set(None)
+        clear_header(self._area)
         redraw_viewports()
 
     @property
@@ -104,6 +105,9 @@ class LimitDrag(PolledOperator):
         return present(self.find_row())
 
     def find_row(self) -> HangtimeConstraint | None:
-        """The constraint; None where a script removed it."""
-        rows = settings_of(self._armature).constraints
+        """The constraint; None where a script removed it, or its armature."""
+        try:
+            rows = settings_of(self._armature).constraints
+        except ReferenceError:
+            return None
         return rows[self.constraint] if 0 <= self.constraint < len(rows) else None

@@ -79,3 +79,9 @@ def redraw_views() -> None:
         for region in area.regions:
             if region.type == "WINDOW":
                 region.tag_redraw()
+
+
+def clear_header(area: bpy.types.Area) -> None:
+    """An editor's header says its own again; it may be freed, with its window or workspace."""
+    if any(area == each for screen in bpy.data.screens for each in screen.areas):
+        area.header_text_set(None)

@@ -86,7 +86,8 @@ class DragContactEdgeOperator(_OfKnownContacts, bpy.types.Operator):
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         if event.type.startswith("TIMER"):
             return {"PASS_THROUGH"}  # playback goes on
-        if event.type in GIVES_UP and event.value == "PRESS":
+        gone = context.area is None  # the timeline, or another workspace is shown
+        if gone or (event.type in GIVES_UP and event.value == "PRESS"):
             self.cancel(context)
             return {"CANCELLED"}
         settings = self._settings()

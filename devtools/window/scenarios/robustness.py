@@ -8,6 +8,7 @@ import time
 
 import addon_utils
 import bpy
+from mathutils import Vector
 
 from ..driving.actions import (
     PACKAGE,
@@ -126,6 +127,24 @@ def outlives_workspace(driver: Driver) -> Actions:
     assert shown_action() != kept, "nothing was adapted"
 
 
+def drag_outlives_workspace(driver: Driver) -> Actions:
+    """Another workspace is shown in the middle of a drag: the pin goes back, and nothing stays."""
+    window = driver.screen.window
+    home, row = window.workspace, settings().contacts[settings().active_contact]
+    kept, pin = shown_action(), Vector(row.at)
+    end = driver.screen.place_of(pin + Vector((0.1, 0.1, 0.0)))
+    yield driver.input.press(driver.screen.place_of(pin), "the landing's pin")
+    yield driver.input.move(end, 0.5)
+    assert (Vector(row.at) - pin).length > 0.01, "the pin does not follow the mouse"
+    window.workspace = bpy.data.workspaces["Animation"]
+    yield Until("the end of the drag", idle, 5)
+    yield driver.input.let_go()
+    window.workspace = home
+    yield 0.5
+    assert (Vector(row.at) - pin).length < 1e-4, "the pin did not go back"
+    assert shown_action() == kept, "a drag that ended so has adapted"
+
+
 def closes_its_window(driver: Driver) -> Actions:
     """A solve ends with the window in which it was started, and leaves nothing.
 
@@ -204,6 +223,7 @@ SCENARIOS = (
     Scenario("stays_usable", stays_usable, ("adapts",), 120),
     Scenario("survives_worker", survives_worker, ("adapts",), 120),
     Scenario("outlives_workspace", outlives_workspace, ("adapts",), 240),
+    Scenario("drag_outlives_workspace", drag_outlives_workspace, ("drags_landing",)),
     Scenario("closes_its_window", closes_its_window, ("adapts",), 180),
 )
 LAST = (Scenario("disabled", disabled, ("adapts",), 120),)
