@@ -14,11 +14,11 @@ import pinocchio
 from scipy.linalg import cholesky_banded
 from scipy.spatial.transform import Rotation
 
+from ..devtools.checks.mjcf import mjcf, motion_state
 from ..devtools.peers.task import Equations, Task, metric_matrix
 from ..solver.arrays import FloatArray
 from ..solver.body.character import Character
 from ..solver.optimisation.kkt_step import LinearisedProblem
-from ..solver.results.mjcf import mjcf, motion_state
 from ..solver.transcription.motion import Motion
 
 RIDGE = 100.0  # weight of the rows beside the metric, as in our own steps

@@ -55,6 +55,7 @@ def fit_figures(quality: FitQuality) -> dict[str, float]:
     return {
         "fit_joint_centres_rms_cm": quality.joint_centres_rms_cm,
         "fit_worst_joint_cm": quality.worst_joint_cm,
+        "fit_most_turned_deg": quality.most_turned_deg,
     }
 
 

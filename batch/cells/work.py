@@ -31,7 +31,7 @@ from ...solver.data.reports.recording import Origin
 from ...solver.data.requests import Requests
 from ...solver.doctor.examination.diagnose import diagnose
 from ...solver.doctor.stretch import Span
-from ...solver.results.report import fit_quality
+from ...solver.results.fit_quality import fit_quality
 from ...solver.results.unseen_support import refuse_unseen
 from ...solver.worker.pipeline import Subject, measure, no_fit, solve
 from ..planning.blender_need import needs_blender, require_blender

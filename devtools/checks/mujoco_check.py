@@ -8,8 +8,8 @@ import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
 from ...solver.data.constants import STANDARD_GRAVITY
-from ...solver.results.mjcf import ROOT_SIZE, mjcf, motion_state
 from ...solver.transcription.motion import Motion
+from .mjcf import ROOT_SIZE, mjcf, motion_state
 
 RATE = 960.0  # Hz
 

@@ -11,8 +11,8 @@ import mujoco
 import numpy as np
 
 from ...solver.arrays import FloatArray, IntArray
-from ...solver.results.mjcf import quaternions
 from ...solver.solid.shapes import Capsule
+from .mjcf import quaternions
 
 POINT = 1e-7  # m, radius of a ball that is a point, and half the length of a capsule that is a ball
 NEAR = 1e-3  # m; what is further apart is not looked at closer

@@ -21,7 +21,7 @@ from ...solver.doctor.examination.diagnose import diagnose
 from ...solver.doctor.examination.repair import repaired
 from ...solver.fitting.fit import Fit
 from ...solver.results.certificate import loaded_drifts
-from ...solver.results.report import fit_quality
+from ...solver.results.fit_quality import fit_quality
 from ...solver.worker.pipeline import fit_subject, measure, no_fit
 from ...solver.worker.stage_clock import StageClock
 from .damages.damage import Damage

@@ -8,13 +8,13 @@ from ...solver.body.passive_joints import evaluate_passive_torques
 from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.contacts import Phase, PhaseKind
 from ...solver.data.row_kinds import RowKind
-from ...solver.results.mjcf import hinge_order
 from ...solver.stages.implicit import Adaptation
 from ...solver.transcription.constraint import dense_violation
 from ...solver.transcription.constraint_functions import PeakForce
 from ...solver.transcription.motion import Motion
 from ...solver.transcription.rows import ROOT_ANGLES
 from ...solver.transcription.torque_constraint import TorqueFunction
+from ..checks.mjcf import hinge_order
 from ..checks.mujoco_check import Residual, check_motion
 from .jobs import Json
 from .looks import looks

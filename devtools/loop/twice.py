@@ -7,8 +7,8 @@ import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
 from ...solver.data.constants import STANDARD_GRAVITY
-from ...solver.results.mjcf import mjcf, qpos
 from ...solver.transcription.motion import Motion
+from ..checks.mjcf import mjcf, qpos
 from ..checks.mujoco_check import RATE, Residual, inverse_dynamics, root_wrench
 
 BESIDE = 0.02  # s

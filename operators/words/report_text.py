@@ -211,6 +211,9 @@ def _quality(report: Report) -> Iterator[str]:
     fit = report.fit_to_recording
     joints = f"joints {fit.joint_centres_rms_cm:.1f} cm from the recording (rms)"
     yield f"{'Fit':<12}{joints}{apex_words(fit.pelvis_apex_difference_cm)}"
+    if fit.most_turned:
+        turned = f"{fit.most_turned} by {fit.most_turned_deg:.0f}°"
+        yield f"            turned away furthest: {turned}, frame {fit.most_turned_frame:.0f}"
     yield from fit_excess_lines(report)
     residuals = report.between_nodes
     for kind, left in ((PhaseKind.FLIGHT, residuals.flight), (PhaseKind.GROUND, residuals.ground)):

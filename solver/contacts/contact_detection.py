@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -30,6 +31,7 @@ REACH = 100  # instants on each side of a rest in which a point mostly leaves it
 SINK_WINDOW = 0.2  # s; of the running low of its height, when it lands
 MIN_PIECE = 0.03  # s, of a contact that a cut leaves; a foot takes as long to land or leave
 MAX_DELAY = 0.1  # s, by which noise delays a contact of who stands; a hop of 1 cm flies as long
+RESTART = 2.0  # times the speed of one that rests: so fast a foot goes on that paused in the air
 LEAST_FALL = 0.25  # m/s; a flight of 0.05 s ends, and begins, so fast; standing bodies are slower
 
 
@@ -95,7 +97,7 @@ def _touches(
         for first, last in _runs(at_rest)
         for candidate in _candidates_around(clock, thresholds, movement, first, last)
     ]
-    for candidate in _joined(candidates, movement.track):
+    for candidate in _joined(_without_pauses(candidates, thresholds, movement), movement.track):
         cut_off = candidate.start <= clock[0] or candidate.end >= clock[-1]
         if candidate.end - candidate.start > (0.0 if cut_off else thresholds.min_duration):
             during = slice(candidate.first, candidate.last + 1)
@@ -228,6 +230,27 @@ def _runs(mask: BoolArray) -> list[tuple[int, int]]:
     edges = np.diff(np.concatenate(([0], mask.astype(np.int8), [0])))
     first, last = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
     return list(zip(first.tolist(), last.tolist(), strict=True))
+
+
+def _without_pauses(
+    candidates: Sequence[_Candidate], thresholds: ContactThresholds, movement: PointMovement
+) -> list[_Candidate]:
+    """Candidates but for moments at which a foot that comes down pauses in the air: shorter than
+    any contact, just before one, higher than from where a foot lands, and left fast again, as by
+    none that carries."""
+    heights, speeds = movement.track[:, 2], np.linalg.norm(movement.velocity[:, :2], axis=1)
+    ordered = sorted(candidates, key=lambda c: c.start)
+
+    def pauses(candidate: _Candidate, following: _Candidate) -> bool:
+        short = (candidate.last - candidate.first) * STEP < thresholds.min_duration
+        if not short or candidate.end + MIN_SEPARATION < following.start:
+            return False
+        height = heights[candidate.first] - heights[following.first : following.last + 1].min()
+        left = speeds[candidate.last : following.first].max(initial=0.0)
+        return bool(height > thresholds.landing_height and left > RESTART * thresholds.max_speed)
+
+    before = [one for one, following in pairwise(ordered) if not pauses(one, following)]
+    return before + ordered[-1:]
 
 
 def _joined(candidates: Iterable[_Candidate], track: FloatArray) -> list[_Candidate]:

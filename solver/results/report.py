@@ -25,7 +25,6 @@ from ..data.reports.dynamics import (
 from ..data.reports.jumps import PhaseReport, TimeMap
 from ..data.reports.recording import FigureSummary, Origin, RecordingSummary
 from ..data.reports.report import (
-    FitQuality,
     MotionChange,
     RecordedOverlap,
     ReductionReport,
@@ -52,20 +51,18 @@ from .certificate import (
     friction_of,
     loaded_drifts,
 )
+from .fit_quality import fit_quality
 from .flight_summary import (
-    apex,
-    flights,
     frames_per_second,
     jumps,
     lifted_flights,
-    recorded_apex,
     scene_frame,
 )
 from .joint_report import fast_joint, joint_changes, recorded_ranges
 from .moving_ground import moving_ground
 from .npz_export import instants
 from .torque_curve import exact_torques, torque_curve
-from .unseen_support import accepted, carried_flights, let_go, unseen_support, worst_joint
+from .unseen_support import accepted, carried_flights, let_go, unseen_support
 from .violations import condition_violations, pins_of_contacts, worst_constraints
 
 SAMPLE_RATE = 1000.0  # Hz, of what is measured between the nodes
@@ -282,25 +279,6 @@ def _forces_bw(motion: Motion, times: FloatArray) -> FloatArray:
     """(T, points, 3) contact forces at some times, s, in body weights."""
     weight = motion.transcription.character.mass * STANDARD_GRAVITY
     return np.asarray(motion.forces(times) / weight)
-
-
-def fit_quality(fit: Fit) -> FitQuality:
-    """Distance of the fit from the recording, at the recording's frames."""
-    performance = fit.performance
-    apart = fit.motion.joint_centres(performance.times) - performance.centres
-    each = np.sqrt((apart**2).sum(axis=2).mean(axis=1))  # frame by frame
-    name, furthest, frame = worst_joint(fit, apart)
-    whole = (f for f in flights(fit) if f.start > 0.0 and f.end < fit.schedule.duration)
-    lost = [100.0 * (apex(fit.motion, f) - recorded_apex(fit, f)) for f in whole]
-    return FitQuality(
-        joint_centres_rms_cm=100.0 * _rms(each),
-        pelvis_apex_difference_cm=max(lost, key=abs, default=None),
-        worst_frame_rms_cm=100.0 * float(each.max()),
-        worst_frame=float(performance.recording.frames[each.argmax()]),
-        worst_joint=name,
-        worst_joint_cm=furthest,
-        worst_joint_frame=frame,
-    )
 
 
 def _recorded_overlaps(adaptation: Adaptation) -> Iterator[RecordedOverlap]:

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..arrays import FloatArray
 from ..data.constants import STANDARD_GRAVITY, UP
 from ..data.contacts import Interval
 from ..data.faults import FitNeedsSupport
@@ -107,14 +106,3 @@ def accepted(motion: Motion) -> Iterator[AcceptedReport]:
             off = motion.drift(i, pinned_instants(each, SAMPLE_RATE))
             millimetres = 1000.0 * float(off.max()), 1000.0 * each.contact.slack
             yield AcceptedReport(each.contact.name, *millimetres)
-
-
-def worst_joint(fit: Fit, apart: FloatArray) -> tuple[str, float, float]:
-    """The body whose joint is furthest off the recording, how far, cm, and in which frame.
-
-    apart: (T, B, 3) m.
-    """
-    off = np.linalg.norm(apart, axis=2)
-    frame, body = divmod(int(off.argmax()), off.shape[1])
-    name = fit.performance.character.bodies[body].name
-    return name, 100.0 * float(off[frame, body]), float(fit.performance.recording.frames[frame])

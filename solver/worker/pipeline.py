@@ -54,9 +54,10 @@ from ..fitting.lasting_fit import lasting_fit
 from ..loops.find_cycle import check_loop, find_cycle
 from ..loops.loop_report import loop_report
 from ..results.certificate import LIMITS
+from ..results.fit_quality import fit_quality
 from ..results.joint_report import joint_turns
 from ..results.last_stance import last_stance_move
-from ..results.report import fit_quality, report, time_map
+from ..results.report import report, time_map
 from ..results.trace_sampling import motion_traces, recorded_traces
 from ..results.unseen_support import refuse_unseen
 from ..results.violations import most_telling

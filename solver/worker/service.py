@@ -21,7 +21,7 @@ from ..doctor.repairs import Repairs
 from ..doctor.stance.feet import find_feet
 from ..fitting.fit import Fit
 from ..optimisation.sqp import Step, Stopped
-from ..results.report import fit_quality
+from ..results.fit_quality import fit_quality
 from ..results.unseen_support import fit_needs
 from ..stages.implicit import Adaptation
 from ..stages.interactive import Follower, change, pelvis_range

@@ -63,7 +63,7 @@ class FitQuality:
     pelvis_apex_difference_cm: of the flight where it is most; None where the clip holds none from
     take-off to landing, whose apex may be beyond its ends. worst_frame: the one whose joint centres
     are furthest off, worst_frame_rms_cm of rms. worst_joint: the body whose joint is furthest off
-    in any frame, "" where it is not told.
+    in any frame, "" where it is not told. most_turned: the body that is turned away furthest.
     """
 
     joint_centres_rms_cm: float
@@ -73,6 +73,9 @@ class FitQuality:
     worst_joint: str = ""
     worst_joint_cm: float = 0.0
     worst_joint_frame: float = 0.0
+    most_turned: str = ""
+    most_turned_deg: float = 0.0
+    most_turned_frame: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import hypothesis.strategies as st
 import mujoco
 import numpy as np
 import pytest
+from hangtime.devtools.checks.mjcf import hinge_order, mjcf, state
 from hangtime.devtools.checks.mujoco_check import inverse_dynamics, root_wrench
 from hangtime.solver.analysis.performance import perform
 from hangtime.solver.arrays import FloatArray
@@ -26,7 +27,6 @@ from hangtime.solver.data.problem import MassTable
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.requests import AddedMass, BodyChange, LimbChange
 from hangtime.solver.inverse_kinematics.reseat import reseat
-from hangtime.solver.results.mjcf import hinge_order, mjcf, state
 from hangtime.solver.results.npz_export import sample
 from hangtime.solver.transcription.motion import Motion, dynamics_residual
 from hangtime.tests.helpers import toy_problems as toys

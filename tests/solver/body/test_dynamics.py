@@ -7,6 +7,7 @@ import casadi as ca
 import mujoco
 import numpy as np
 import pytest
+from hangtime.devtools.checks.mjcf import hinge_order, mjcf, state
 from hangtime.devtools.checks.mujoco_check import inverse_dynamics, root_wrench
 from hangtime.devtools.peers.newton_euler import inverse_dynamics as newton_euler
 from hangtime.devtools.peers.newton_euler import momentum_rate
@@ -23,7 +24,6 @@ from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.numerics.batch_function import BatchFunction
 from hangtime.solver.numerics.rotations import rotation_matrix
-from hangtime.solver.results.mjcf import hinge_order, mjcf, state
 from hangtime.solver.stages.implicit import adapt
 from hangtime.solver.transcription.motion import motion_inverse_dynamics
 from hangtime.solver.transcription.transcription import Transcription

@@ -172,6 +172,20 @@ def test_a_heel_held_up_is_no_contact_but_the_toe_is() -> None:
     assert (toe.start, toe.end) == (0.0, TIMES[-1])
 
 
+def test_a_toe_that_pauses_in_the_air_as_it_comes_down_does_not_touch_yet() -> None:
+    """Recorded in a turning step of the ten hops, whose other foot carries: 3.5 cm up."""
+    hops = performance(HOPS)
+    starts = [c.start for c in find_contacts(hops).contacts if c.point == "Left toe"]
+    (landed,) = [t for t in starts if 9.08 < t < 9.42]
+    points, floor_m = contact_points(hops)
+    track = points["Left toe"].track
+    swinging = (hops.times > landed - 0.08) & (hops.times < landed - 0.03)
+    assert track[swinging, 2].min() - floor_m > 0.02
+    speeds = np.linalg.norm(np.gradient(track, hops.times, axis=0)[swinging, :2], axis=1)
+    assert speeds.min() > 1.0
+    assert landed > 9.24  # the pause is at 9.21
+
+
 def test_a_point_that_slides_away_stands_in_a_new_place() -> None:
     x = np.clip(TIMES - 1.0, 0.0, 0.5) * 1.0  # half a metre, along the floor
     s = detect_contacts(TIMES, {"Left toe": point(np.zeros_like(TIMES), x=x)})

@@ -23,8 +23,8 @@ from hangtime.solver.data.traces import UNSEEN_SUPPORT
 from hangtime.solver.fitting.fit import Fit
 from hangtime.solver.fitting.lasting_fit import lasting_fit, leaning
 from hangtime.solver.numerics.rotations import axis_rotation
+from hangtime.solver.results.fit_quality import fit_quality
 from hangtime.solver.results.npz_export import save
-from hangtime.solver.results.report import fit_quality
 from hangtime.solver.results.unseen_support import fit_needs
 from hangtime.solver.transcription.motion import dynamics_residual
 from hangtime.solver.worker.pipeline import (

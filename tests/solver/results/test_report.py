@@ -15,8 +15,9 @@ from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.data.reports.report import Report, StageReport, as_json
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.status import Durations, Status
+from hangtime.solver.results.fit_quality import fit_quality
 from hangtime.solver.results.npz_export import instants, sample, save
-from hangtime.solver.results.report import fit_quality, report
+from hangtime.solver.results.report import report
 from hangtime.solver.results.violations import worst_constraints
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.tests.helpers.fitted_hop import fitted_hop
@@ -59,6 +60,17 @@ def test_no_apex_is_told_of_a_clip_that_ends_in_the_air() -> None:
     assert told is None
     assert apex_words(told) == ""
     assert apex_words(-0.01) == ", apex as high as recorded"
+
+
+def test_the_body_that_the_fit_turns_furthest_is_told() -> None:
+    hop = fitted_hop()
+    performance, told = hop.performance, fit_quality(hop)
+    frame = int(np.argmin(np.abs(performance.recording.frames - told.most_turned_frame)))
+    (body,) = [i for i, b in enumerate(performance.character.bodies) if b.name == told.most_turned]
+    now = hop.motion.pose(performance.times[frame : frame + 1]).rotations[0, body]
+    cosine = (np.trace(performance.rotations[frame, body].T @ now) - 1.0) / 2.0
+    assert told.most_turned_deg == pytest.approx(np.degrees(np.arccos(cosine)), rel=1e-6)
+    assert 1.0 < told.most_turned_deg < 60.0
 
 
 def test_the_hop_is_solved() -> None:

@@ -5,9 +5,9 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
+from hangtime.devtools.checks.mjcf import hinge_order, mjcf, qacc, qpos, qvel
 from hangtime.devtools.checks.mujoco_check import check_motion, check_npz
 from hangtime.solver.data.constants import STANDARD_GRAVITY
-from hangtime.solver.results.mjcf import hinge_order, mjcf, qacc, qpos, qvel
 from hangtime.solver.results.npz_export import sample
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 

@@ -11,10 +11,10 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
-from ..body.character import Character
-from ..body.kinematics import BodyPoint, forward_kinematics
-from ..transcription.motion import Motion
+from ...solver.arrays import FloatArray, IntArray
+from ...solver.body.character import Character
+from ...solver.body.kinematics import BodyPoint, forward_kinematics
+from ...solver.transcription.motion import Motion
 
 ROOT_SIZE = 6  # velocities of the free joint
 AXES = ("1 0 0", "0 1 0", "0 0 1")
