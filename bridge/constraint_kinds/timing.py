@@ -24,9 +24,14 @@ class TimingBy(Enum):
 SECONDS = stored_number("Seconds", min=0.0, soft_max=5.0, default=0.5)
 
 
+def by_factor(row: Row) -> bool:
+    """Whether a row gives its phase's duration as a factor, not in seconds."""
+    return TimingBy[row.timing_by] is TimingBy.FACTOR
+
+
 def _record(row: Row, context: RowContext) -> PhaseTiming:
     phase = phase_of(row, context.clip)
-    if TimingBy[row.timing_by] is TimingBy.FACTOR:
+    if by_factor(row):
         return PhaseTiming(row.name, phase, factor=row.factor)
     return PhaseTiming(row.name, phase, seconds=row.seconds)
 
@@ -34,8 +39,7 @@ def _record(row: Row, context: RowContext) -> PhaseTiming:
 def _draw(fields: FieldDrawing, row: Row) -> None:
     fields.phase()
     fields.layout.prop(row, "timing_by")
-    by_factor = TimingBy[row.timing_by] is TimingBy.FACTOR
-    fields.layout.prop(row, "factor" if by_factor else "seconds")
+    fields.layout.prop(row, "factor" if by_factor(row) else "seconds")
 
 
 KIND = ConstraintKind(

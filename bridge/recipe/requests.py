@@ -12,7 +12,8 @@ are in degrees, lengths in m, times in s, frames are the scene's, and vectors ar
 bone = "Hand.L"
 offset = [0, 0.1, 0]            # from the bone's head, in its axes; default: its middle
 place = [1, 0, 2.4]             # in the world; default: where the recording has it
-path = [{ frame = 140, place = [1, 0, 2] }, { frame = 150, place = [1, 0.5, 2] }]  # it moves
+path = [{ frame = 140, place = [1, 0, 2] }, { frame = 150, place = [1, 0.5, 2] }]  # it moves:
+                                # frames of the result, also where its phases last longer
 relative = [0, 0, 0.1]         # m off the place, in `axes`; or forward, up, left, back, right, down
 at_least = { z = 0.3 }          # bounds about the place instead of the place itself; by axis:
 at_most = { z = 0.5 }           # x, y, z; forward, left, up; or along, across, out of a surface

@@ -98,16 +98,6 @@ def interval_of(row: Any, phases: Spans, motion: Traces | None) -> Frames:
     return NEVER if at is None else (at, at)
 
 
-def followed_frames(row: Any, clip: Clip) -> Frames:
-    """First and last scene frame within the clip at which a row may hold: the whole of its phase,
-    for the solver alone knows the instants; of a Hold the whole clip. Raises as `when_of`."""
-    when_of(row, clip)
-    first, last = _throughout(row, clip.phases)
-    if first > last:
-        first, last = clip.ends
-    return max(first, clip.ends[0]), min(last, clip.ends[1])
-
-
 def _throughout(row: Any, phases: Spans) -> Frames:
     match Span[row.span]:
         case Span.PHASE:

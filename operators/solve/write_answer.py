@@ -14,7 +14,7 @@ from ...bridge.armature.strips import layers_above
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
 from ...bridge.constraints.standing import missed_contacts
-from ...bridge.constraints.status import write_status
+from ...bridge.constraints.status import retimed_frames, write_status
 from ...bridge.controls.aimed import aimed_in, without
 from ...bridge.controls.driven import is_driven
 from ...bridge.controls.held import held_bones
@@ -321,7 +321,8 @@ def _note(
     told: lines about the rest of the take.
     """
     settings = settings_of(armature)
-    settings.status = "\n".join([summary(answer, roles(settings)), *told])
+    said = summary(answer, roles(settings), retimed_frames(settings, answer.report.times))
+    settings.status = "\n".join([said, *told])
     write_status(settings, answer.report)
     action_settings(action).report = "\n".join([as_text(answer.report), *told])
     store_times(action, answer.report.times)

@@ -24,10 +24,11 @@ from .report_text import (
 )
 
 
-def summary(answer: Adapted, roles: Mapping[str, str]) -> str:
+def summary(answer: Adapted, roles: Mapping[str, str], retimed_frames: Mapping[str, str]) -> str:
     """Lines for the sidebar: how well it holds, how long it took, how hard the ground pushes.
 
-    roles: what stances are to the clip, such as "Landing", by their phases' names.
+    roles: what stances are to the clip, such as "Landing", by their phases' names. retimed_frames:
+    what is said of when constraints hold, by their names.
     """
     report = answer.report
     worst = max(report.contacts, key=lambda contact: contact.loaded_slide_mm, default=None)
@@ -42,7 +43,11 @@ def summary(answer: Adapted, roles: Mapping[str, str]) -> str:
             *accepted_lines(report.needs),
             *lifted_lines(report),
             *([] if worst is None else [_slides(worst)]),
-            *(f"{c.name}: {_held(c)}" for c in report.conditions if not c.kind.guards),
+            *(
+                f"{c.name}: {_held(c, retimed_frames.get(c.name, ''))}"
+                for c in report.conditions
+                if not c.kind.guards
+            ),
             *(
                 f"{roles.get(p.phase, phase_title(p.phase))}: {p.adapted_s:.2f} s, "
                 f"was {p.recorded_s:.2f} s"
@@ -71,7 +76,7 @@ def _peak(peak: ForcePeak, recorded: float) -> str:
     )
 
 
-def _held(constraint: ConstraintReport) -> str:
+def _held(constraint: ConstraintReport, when: str) -> str:
     if constraint.met:
-        return "held"
+        return f"held{when}"
     return f"missed by {amount(constraint)}"

@@ -12,9 +12,7 @@ from ..data.problem import MotionProblem
 from ..data.requests import ConeShape, PointRequest
 from ..transcription.contact_pins import PlaceTrajectory, PointContact
 from .evaluation_context import EvaluationContext, touches
-from .point_constraints import path_places, point_axes, point_place
-
-PATH_SAMPLING_RATE = 60.0  # Hz
+from .point_constraints import path_instants, path_places, point_axes, point_place
 
 
 def without_lifted(schedule: ContactSchedule, problem: MotionProblem) -> ContactSchedule:
@@ -91,10 +89,9 @@ def detailed_contact(
         axes = point_axes(request, context, span)
         held = axes.T[[bound == (0.0, 0.0) for bound in request.bounds]]
     if request.path is not None:
-        count = max(2, int((span[1] - span[0]) * PATH_SAMPLING_RATE))
-        times = np.linspace(*span, count)
-        places = path_places(request.path, context.timeline)(times)
-        track = PlaceTrajectory(times, places - places[0])
+        times, places = path_instants(request.path, context.timeline), np.array(request.path.places)
+        begin = path_places(request.path, context.timeline)(np.array(span[:1]))
+        track = PlaceTrajectory(times, places - begin)
     return replace(
         contact,
         held=held,

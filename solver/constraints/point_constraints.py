@@ -83,6 +83,11 @@ def _reference_place(context: EvaluationContext, point: BodyPoint, times: FloatA
 
 def path_places(path: Path, timeline: Timeline) -> Callable[[FloatArray], FloatArray]:
     """Path as a function of instants (U,) s: (U, 3) m; see contact_pins.interpolate_places."""
-    at = np.array([timeline.instant(frame) for frame in path.frames])
-    places = np.array(path.places)
+    at, places = path_instants(path, timeline), np.array(path.places)
     return lambda times: interpolate_places(at, places, times)
+
+
+def path_instants(path: Path, timeline: Timeline) -> FloatArray:
+    """(T,) s, new time, of a path's frames: what moves keeps the scene's clock, however the
+    motion's phases are retimed."""
+    return np.asarray((np.array(path.frames) - timeline.first_frame) / timeline.rate)

@@ -49,7 +49,7 @@ class PointAxes(Enum):
 
 @dataclass(frozen=True)
 class Path:
-    """Target trajectory: instants as scene frames, (T,), and places, T of (3,) m, world."""
+    """Target trajectory: scene frames of the result, (T,), and places, T of (3,) m, world."""
 
     frames: tuple[float, ...]
     places: tuple[Vector, ...]

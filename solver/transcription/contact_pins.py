@@ -24,6 +24,7 @@ from .rows import Layout, Rows
 
 DEFAULT_FRICTION = 1.0  # of a rubber sole on a hall's floor
 SLACK_RATE = 50.0  # 1/s, of a speed that goes with a slack of places
+TINY = 1e-9  # s
 VELOCITY_STEP = 1e-3  # s, of the central differences that give a moving place its velocity
 
 
@@ -49,7 +50,8 @@ class PlaceTrajectory:
         both = np.stack([times - VELOCITY_STEP, times + VELOCITY_STEP])
         both = both.clip(self.times[0], self.times[-1])
         before, after = self.at(both.ravel()).reshape(2, -1, 3)
-        return np.asarray((after - before) / (both[1] - both[0])[:, None])
+        apart = np.maximum(both[1] - both[0], TINY)  # outside it rests
+        return np.asarray((after - before) / apart[:, None])
 
 
 def interpolate_places(times: FloatArray, places: FloatArray, at: FloatArray) -> FloatArray:
@@ -69,10 +71,10 @@ class PointContact:
     """A contact in the equations; `point` indexes the transcription's points. World axes.
 
     held: (k, 3) unit directions in which the point is held; None in all. track: trajectory of its
-    place. ride: on ground that moves. sole: how the point sinks to its place along the normal and
-    rises from it (compliant_sole.py). friction: coefficient, None for a grip, which may pull as
-    well as push. normal: (3,) of the surface, where the ride begins. pyramid: a four-sided
-    friction pyramid inside the cone.
+    place, by the scene's clock. ride: on ground that moves. sole: how the point sinks to its place
+    along the normal and rises from it (compliant_sole.py). friction: coefficient, None for a grip,
+    which may pull as well as push. normal: (3,) of the surface, where the ride begins. pyramid: a
+    four-sided friction pyramid inside the cone.
     """
 
     contact: Contact
@@ -92,15 +94,15 @@ class PointContact:
         return self.friction is None or bool(np.hypot(x, y) <= self.friction * z)
 
     def retimed(self, warp: Callable[[FloatArray], FloatArray]) -> "PointContact":
-        """The same contact at other instants. warp: new instants (T,) s of old ones."""
+        """The same contact at other instants; a track's clock stays, as a ride's does.
+
+        warp: new instants (T,) s of old ones.
+        """
         start, end = warp(np.array([self.contact.start, self.contact.end])).tolist()
         contact = replace(self.contact, start=start, end=end)
-        track, sole = (
-            None if each is None else replace(each, times=warp(each.times))
-            for each in (self.track, self.sole)
-        )
+        sole = None if self.sole is None else replace(self.sole, times=warp(self.sole.times))
         ride = None if self.ride is None else self.ride.retimed(warp)
-        return replace(self, contact=contact, track=track, ride=ride, sole=sole)
+        return replace(self, contact=contact, ride=ride, sole=sole)
 
     def pin_error(self, at: FloatArray, place: FloatArray, times: FloatArray) -> FloatArray:
         """(T, k) errors of points at (T, 3) against where they are held at instants (T,) s, m.

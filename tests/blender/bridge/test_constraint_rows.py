@@ -16,6 +16,7 @@ from hangtime.bridge.rows import bone_keys
 from hangtime.bridge.rows.choices import BodyKind
 from hangtime.solver.data import faults, requests
 from hangtime.solver.data.reports.constraints import ConstraintReport
+from hangtime.solver.data.reports.jumps import TimeMap
 from hangtime.solver.data.requests import When
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.tests.blender.helpers import rigs
@@ -338,6 +339,7 @@ def test_every_row_is_told_how_it_came_out(rig: bpy.types.Object) -> None:
         contacts=[
             SimpleNamespace(name="Bar", worst_violation_mm=0.02, worst_violation_frame=3.0),
         ],
+        times=TimeMap((1.0, 10.0), (1.0, 10.0)),
     )
     write_status(rig.hangtime, report)
     told = {row.name: (row.met, row.status) for row in rig.hangtime.constraints}
@@ -353,3 +355,21 @@ def test_every_row_is_told_how_it_came_out(rig: bpy.types.Object) -> None:
     pin = rig.hangtime.constraints["Pin"]
     pin.place.x += 0.5  # what was said of it holds no longer
     assert (pin.met, pin.status) == ("UNKNOWN", "")
+
+
+def test_a_row_tells_at_which_frames_of_the_result_it_is_met(rig: bpy.types.Object) -> None:
+    added(rig, KINDS["POINT"], "foot", name="Early", span="FRAME", first_frame=4.0)
+    added(rig, KINDS["POINT"], "foot", name="Late", span="FRAME", first_frame=15.0)
+    added(rig, KINDS["POINT"], "foot", name="Long", span="FRAMES", first_frame=4.0, last_frame=20.0)
+    names = ("Early", "Late", "Long")
+    report = SimpleNamespace(
+        conditions=[ConstraintReport(n, RowKind.POINT, 0.0, 1.0, met=True) for n in names],
+        contacts=[],
+        times=TimeMap((1.0, 10.0, 20.0), (1.0, 10.0, 23.0)),
+    )
+    write_status(rig.hangtime, report)
+    assert [row.status for row in rig.hangtime.constraints] == [
+        "Met",
+        "Met at frame 16.5 (the recording's 15)",
+        "Met at frames 4 to 23 (the recording's 4 to 20)",
+    ]

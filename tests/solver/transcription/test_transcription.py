@@ -222,6 +222,18 @@ def test_a_steady_track_has_its_speed_at_its_ends_too() -> None:
     assert found == pytest.approx(np.tile(SPEED, (3, 1)))
 
 
+def test_a_track_keeps_the_scene_s_clock_as_its_contact_is_retimed() -> None:
+    contact, times = carried().contacts[0], np.array([0.15, 0.2])
+    later = contact.retimed(lambda old: old + 0.1)
+    assert later.contact.start == pytest.approx(contact.contact.start + 0.1)
+    assert later.holds(times).shift == pytest.approx(contact.holds(times).shift)
+
+
+def test_what_a_track_carries_rests_before_and_after_it() -> None:
+    track = PlaceTrajectory(np.array([0.1, 0.4]), np.array([[0.0, 0.0, 0.0], SPEED]))
+    assert track.velocity(np.array([0.0, 0.5])) == pytest.approx(np.zeros((2, 3)))
+
+
 def test_relaxed_bounds_move_their_share_towards_what_was_asked() -> None:
     t, x = discretised(), random_state(5)
     relaxed = t.relaxed(x, 0.25)

@@ -11,6 +11,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.constraint_kinds import point
 from hangtime.bridge.constraints import target_paths
+from hangtime.bridge.rows.times import Clip
 from hangtime.bridge.scene.ground import ground_faces
 from hangtime.bridge.scene.members import ground_members, members
 from hangtime.bridge.scene.read import SceneReading, read_scene
@@ -106,14 +107,13 @@ def test_a_pin_lands_on_a_body_where_it_fell(armature: bpy.types.Object) -> None
 
 
 def test_a_point_s_target_that_hangs_on_a_body_goes_with_it(
-    crate: bpy.types.Object, monkeypatch: pytest.MonkeyPatch
+    crate: bpy.types.Object,
 ) -> None:
     target = bpy.data.objects.new("Target", None)
     bpy.context.scene.collection.objects.link(target)
     target.parent = crate
     row = SimpleNamespace(name="hand", kind=point.KIND.name, target=target)
-    monkeypatch.setattr(target_paths, "followed_frames", lambda *_: (1040.0, 1050.5))
-    path = target_paths.paths_of([row], None, 1.0)["hand"]
+    path = target_paths.paths_of([row], Clip((1040.0, 1050.5), (), {}), 1.0)["hand"]
     assert [place[2] for place in (path.places[0], path.places[-1])] == pytest.approx(
         [RESTS, RESTS], abs=0.05
     )

@@ -12,6 +12,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.constraints.motion_problem import problem_of
+from hangtime.bridge.rows.phases import phases_of
 from hangtime.solver.data.solver_options import HumanRanges
 from hangtime.tests.blender.helpers.actions import snapshot
 from hangtime.tests.blender.helpers.jump_scene import (
@@ -22,6 +23,7 @@ from hangtime.tests.blender.helpers.jump_scene import (
     drift,
     landing,
 )
+from mathutils import Vector
 
 OFFSET = np.array([0.3, 0.1, 0.2])  # forward, left, up
 
@@ -119,6 +121,42 @@ def test_a_longer_jump_has_more_frames_and_is_played_to_its_end(
     assert adapted.frame_range[1] <= scene.frame_end < adapted.frame_range[1] + 1
     assert re.search(r"Flight 1: 0\.\d\d s, was 0\.4\d s", analysed.hangtime.status)
     assert "Flight 1    takes 0." in adapted.hangtime.report
+
+
+@pytest.mark.slow
+def test_a_hand_is_on_a_ball_that_moves_as_the_longer_result_is_played(
+    analysed: bpy.types.Object,
+) -> None:
+    settings, scene = analysed.hangtime, bpy.context.scene
+    flight = next(p for p in phases_of(settings) if p.name == "flight 1")
+    first, last = flight.start + 22.0, flight.start + 30.0
+    ball = bpy.data.objects.new("Ball", None)
+    scene.collection.objects.link(ball)
+    for frame in np.arange(first - 10.0, last + 30.0):
+        ball.location = hand(analysed, frame)
+        ball.location.z += 0.05
+        ball.keyframe_insert("location", frame=frame)
+    scene.frame_set(int(first))
+    bpy.ops.hangtime.add_constraint(kind="POINT")
+    (row,) = settings.constraints
+    row.bones.add().name = "LeftHand"
+    row.use_offset, row.offset = True, (0.0, 0.0, 0.0)
+    row.target, row.span, row.first_frame, row.last_frame = ball, "FRAMES", first, last
+    settings.stances["ground 2"].forward = 0.2
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    held = re.fullmatch(r"Met at frames ([\d.]+) to ([\d.]+) \(the recording's .*\)", row.status)
+    assert f"{row.name}: {row.status.replace('Met', 'held')}" in settings.status
+    begin, end = map(float, held.groups())
+    assert begin > first + 1.0  # else nothing was retimed
+    for frame in np.linspace(begin, end, 9):
+        shown = hand(analysed, frame)
+        assert (shown - ball.matrix_world.translation).length < 0.005
+
+
+def hand(armature: bpy.types.Object, frame: float) -> Vector:
+    """Where the left hand is played."""
+    bpy.context.scene.frame_set(int(frame), subframe=frame % 1.0)
+    return armature.matrix_world @ armature.pose.bones["LeftHand"].head
 
 
 def test_times_are_kept_where_that_is_chosen(analysed: bpy.types.Object) -> None:
