@@ -11,14 +11,14 @@ import traceback
 from collections.abc import Callable
 from queue import SimpleQueue
 from threading import Lock, Thread
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, BinaryIO, NoReturn
 
 from .program import bounded_loading, private_stdout
 
 if TYPE_CHECKING:
     from .protocol import Ending, Halted, Message, Request
 
-FOREIGN, PROTOCOL_FAULT, DEAF = 3, 4, 5  # exit codes
+FAILED, FOREIGN, PROTOCOL_FAULT, DEAF = 1, 3, 4, 5  # exit codes
 
 
 def main() -> int:
@@ -28,6 +28,14 @@ def main() -> int:
         return _serve(requests, answers)
     except BrokenPipeError:
         return 0
+
+
+def _end_by_exception(code: int) -> NoReturn:
+    """Ends the process with an exception as its last words. Python's own shutdown would abort with
+    others where a thread is still reading the standard input."""
+    traceback.print_exc()
+    sys.stderr.flush()
+    os._exit(code)
 
 
 def _serve(requests: BinaryIO, answers: BinaryIO) -> int:
@@ -52,8 +60,13 @@ def _serve(requests: BinaryIO, answers: BinaryIO) -> int:
     inbox = Inbox(requests, tell)
     service = Service(inbox.ending)
     Thread(target=inbox.listen, daemon=True).start()
-    while True:
-        tell(service.answer(inbox.next(), tell))
+    try:
+        while True:
+            tell(service.answer(inbox.next(), tell))
+    except BrokenPipeError:
+        os._exit(0)  # the parent has gone
+    finally:  # by an exception
+        _end_by_exception(FAILED)
 
 
 class Inbox:
@@ -80,9 +93,7 @@ class Inbox:
         try:
             self._listen()
         finally:  # by an exception; every other end of it is the process's
-            traceback.print_exc()
-            sys.stderr.flush()
-            os._exit(DEAF)
+            _end_by_exception(DEAF)
 
     def _listen(self) -> None:
         from .protocol import Halt, Halted, ProtocolError, Request, receive

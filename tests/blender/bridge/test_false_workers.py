@@ -94,6 +94,17 @@ protocol.receive = receive
 sys.exit(main.main())
 """
 
+# As a worker does that fails by a mistake as it solves; its listener waits for what comes next.
+FAILS = """
+import runpy, sys
+runpy.run_path({loader!r})["load"]()
+from hangtime.solver.worker import main, service
+def answer(self, request, tell):
+    raise ZeroDivisionError("of the solver")
+service.Service.answer = answer
+sys.exit(main.main())
+"""
+
 Told = Callable[[str], str]
 
 
@@ -151,6 +162,13 @@ def test_one_that_was_greeted_and_neither_speaks_nor_listens_is_not_waited_for(t
 def test_one_whose_listener_fails_ends_and_says_so(told: Told) -> None:
     said = told(LISTENS_NO_MORE.format(loader=LOADER))
     assert said == "ZeroDivisionError: of the listener (exit code 5)"
+
+
+@pytest.mark.slow
+def test_one_that_fails_by_a_mistake_says_by_which(told: Told) -> None:
+    """And not that Python could not shut down beside a thread that reads."""
+    said = told(FAILS.format(loader=LOADER))
+    assert said == "ZeroDivisionError: of the solver (exit code 1)"
 
 
 def test_where_our_own_listener_fails_nobody_waits(
