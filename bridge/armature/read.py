@@ -10,6 +10,7 @@ from ...solver.arrays import FloatArray
 from ...solver.data.faults import BadScale, NoArmature, NoBones, NonFiniteKey
 from ...solver.data.recording import Bone, Recording
 from ..accessors import armature_data, current_action, current_scene, present
+from ..libraries import lost_character, lost_file
 from ..properties.of_actions.known_contacts import known_at
 from . import fcurves
 from .channels import proper
@@ -33,8 +34,8 @@ def read_recording(
     as far as the action goes. World space, m, s; the rotations carry no scale. The scene is left as
     it was. The recording is called what the action is called.
 
-    Raises NoArmature, NoBones, NoAction (also for an action without curves or without a slot for
-    this armature), UnreadStrips, BlendedAction, NonFiniteKey, BadScale.
+    Raises NoArmature, LibraryMissing, NoBones, NoAction (also for an action without curves or
+    without a slot for this armature), UnreadStrips, BlendedAction, NonFiniteKey, BadScale.
     """
     frames = whole_frames(armature, first, last, beyond)
     return record(present(armature), frames)
@@ -128,6 +129,9 @@ def _require_animated(
     """The armature and its action's curves."""
     if armature is None or armature.type != "ARMATURE":
         raise NoArmature(armature.name if armature is not None else None)
+    lost = lost_character(armature) or lost_file(current_action(armature))
+    if lost is not None:
+        raise lost
     if len(armature_data(armature).bones) == 0:
         raise NoBones(armature.name)
     curves = fcurves.curves_of(armature)

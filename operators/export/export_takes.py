@@ -8,6 +8,7 @@ from ...bridge.accessors import armature_data, present
 from ...bridge.exports.engines import ENDINGS, format_of
 from ...bridge.exports.export import export_takes
 from ...bridge.exports.writers import usd_name
+from ...bridge.libraries import lost_character
 from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.recipe.export import ExportOptions
 from ...bridge.rows.choices import Engine, FileFormat, RootMotion
@@ -20,6 +21,7 @@ from ..solve.common import (
     FaultyOperator,
     chosen_armature,
     required_armature,
+    said,
     tweaked,
 )
 from ..solve.results import performer_of, required_result
@@ -93,6 +95,9 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
         armature = chosen_armature(context)
         if armature is None or not _accepted(armature):
             return NOT_ACCEPTED
+        lost = lost_character(armature)
+        if lost is not None:
+            return said(lost)
         if not present(context.scene).is_editable:
             return SCENE_LINKED
         return TWEAK_MODE if tweaked(armature) else None

@@ -6,7 +6,9 @@ import bpy
 
 from ...bridge.accessors import current_action, present
 from ...bridge.action_slots import without_slot
+from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.played import why_no_action
+from ...bridge.libraries import lost_character, lost_file
 from ...bridge.properties.settings import (
     HangtimeSettings,
     action_settings,
@@ -71,9 +73,13 @@ def required_armature(context: bpy.types.Context) -> bpy.types.Object:
 def hindrance(context: bpy.types.Context) -> str | None:
     """Precondition: a sentence why the armature cannot be read now; None where it can."""
     why = unready(context)
-    if why is None and without_slot(required_armature(context)):
-        return NO_SLOT.format(required_armature(context).name)
-    return why
+    if why is not None:
+        return why
+    armature = required_armature(context)
+    lost = lost_file(recorded_action(armature))
+    if lost is not None:
+        return said(lost)
+    return NO_SLOT.format(armature.name) if without_slot(armature) else None
 
 
 def unready(context: bpy.types.Context) -> str | None:
@@ -84,6 +90,9 @@ def unready(context: bpy.types.Context) -> str | None:
     if armature is None or armature.type != "ARMATURE":
         active = present(context.view_layer).objects.active
         return said(NoArmature(active.name if active is not None else None))
+    lost = lost_character(armature)
+    if lost is not None:
+        return said(lost)
     if not armature.is_editable:
         return LINKED
     if armature.mode == "EDIT":

@@ -8,6 +8,7 @@ from ...bridge.armature.actions import recorded_action, show
 from ...bridge.armature.played import why_no_action
 from ...bridge.armature.strips import remove_strips
 from ...bridge.fake_users import unguard
+from ...bridge.libraries import lost_file
 from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.scene.played_end import play_what_is_left
 from ...bridge.takes.takes import bake_shown, results_from, unphysical_since
@@ -113,7 +114,11 @@ class CompareOperator(_OfResult, bpy.types.Operator):
         if performer != armature:
             return BESIDE.format(performer.name)
         result = required_result(context)
-        return NOT_COMPARED.format(result.name) if compared(armature) is None else None
+        pair = compared(armature)
+        if pair is None:
+            return NOT_COMPARED.format(result.name)
+        lost = lost_file(pair[0])
+        return said(lost) if lost is not None else None
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature = required_armature(context)
@@ -137,6 +142,9 @@ class ShowRecordingOperator(PolledOperator, bpy.types.Operator):
             return said(why_no_action(armature))
         if current_action(armature) == recorded_action(armature):
             return "The recording is what is shown"
+        lost = lost_file(recorded_action(armature))
+        if lost is not None:
+            return said(lost)
         return TWEAK_MODE if tweaked(armature) else None
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:

@@ -4,6 +4,7 @@ import bpy
 
 from ...bridge.accessors import current_action, present, source_of
 from ...bridge.armature.actions import recorded_action, show
+from ...bridge.libraries import lost_file
 from ...bridge.polish.renewal import is_kept
 from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.takes.options import loop_options
@@ -18,7 +19,7 @@ from ...bridge.takes.takes import (
 from ...solver.data.faults import BadRecipe
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
-from .common import ReadyOperator, required_armature, unready
+from .common import ReadyOperator, required_armature, said, unready
 
 NO_RESULT_SHOWN = "The recording is shown; show the result to start from"
 BESIDE = "The armature {} performs {}, as its limbs are others"
@@ -68,6 +69,9 @@ class ShowTakeOperator(PolledOperator, bpy.types.Operator):
         action = _named(armature, self.action)
         if action is None:
             return self.refuse(GONE.format(self.action))
+        lost = lost_file(action)
+        if lost is not None:
+            return self.refuse(said(lost))
         performer = action_settings(action).performer
         if performer not in (None, armature):
             return self.refuse(BESIDE.format(performer.name, action.name))

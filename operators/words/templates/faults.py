@@ -18,6 +18,8 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     "({strips:names}), and what they make together has no keys of its own; in the Nonlinear "
     "Animation editor give the action Blending Replace and Influence 1, or mute these strips.",
     faults.NoBones: "The armature “{armature}” has no bones; choose the recorded figure's.",
+    faults.LibraryMissing: "“{file}” is missing, from which “{linked}” is linked; find it (File > "
+    "External Data > Find Missing Files), save this file and open it again.",
     faults.ClipTooShort: (
         "The chosen frames, {frames[0]:g} to {frames[1]:g}, are only {seconds:.2f} s of the "
         "recording, and a motion needs {minimum_s:g} s at least; choose more frames.",

@@ -19,6 +19,7 @@ from .recordings import ClipTooShort as ClipTooShort
 from .recordings import FitNeedsSupport as FitNeedsSupport
 from .recordings import FramesFarApart as FramesFarApart
 from .recordings import FramesReversed as FramesReversed
+from .recordings import LibraryMissing as LibraryMissing
 from .recordings import LostEdits as LostEdits
 from .recordings import MirroredInBlender as MirroredInBlender
 from .recordings import MissingPart as MissingPart

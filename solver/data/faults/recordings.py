@@ -48,6 +48,14 @@ class NoBones(Fault):
 
 
 @dataclass
+class LibraryMissing(Fault):
+    """The library file from which a data-block is linked is not there."""
+
+    file: str
+    linked: str
+
+
+@dataclass
 class ClipTooShort(Fault):
     """The clip is shorter than the shortest that can hold a motion.
 
