@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING, Literal
 
 import bpy
@@ -11,6 +12,9 @@ from .names import OperatorId
 OperatorResult = set[Literal["RUNNING_MODAL", "CANCELLED", "FINISHED", "PASS_THROUGH", "INTERFACE"]]
 
 NOT_OURS = "Hangtime has no operator “{}”"
+
+MOST_BYTES = 200  # of a precondition's sentence that Blender passes on to scripts
+TAIL_BYTES = 120  # of these for its end, which says what to do
 
 if TYPE_CHECKING:
     OperatorMixin = bpy.types.Operator
@@ -30,7 +34,7 @@ class PolledOperator(OperatorMixin):
     def poll(cls, context: bpy.types.Context) -> bool:
         why = cls.obstacle(context)
         if why is not None:
-            cls.poll_message_set(why)
+            cls.poll_message_set(_told, why)
         return why is None
 
     def refuse(self, why: str, level: Literal["WARNING", "ERROR"] = "ERROR") -> OperatorResult:
@@ -45,3 +49,20 @@ class PolledOperator(OperatorMixin):
         category, _, own = name.partition(".")
         getattr(getattr(bpy.ops, category), own)("INVOKE_DEFAULT", **values)
         return {"FINISHED"}
+
+
+def _told(why: str) -> str:
+    """A precondition's sentence as Blender asks for it: for a tooltip whole. A script, whose code
+    is then being run, gets what Blender would not cut, and the whole on the console."""
+    if sys._getframe().f_back is None or len(why.encode()) <= MOST_BYTES:
+        return why
+    print(why, file=sys.stderr)
+    return _without_middle(why)
+
+
+def _without_middle(text: str) -> str:
+    """A sentence of at most MOST_BYTES, in whole words: what is wrong, and what to do."""
+    whole, gap = text.encode(), " … "
+    head = whole[: MOST_BYTES - TAIL_BYTES - len(gap.encode())].decode(errors="ignore")
+    tail = whole[-TAIL_BYTES:].decode(errors="ignore")
+    return gap.join([head.rpartition(" ")[0], tail.partition(" ")[2]])

@@ -19,6 +19,7 @@ from hangtime.bridge.armature.pose_basis import basis_under
 from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.repairs.analysis_key import analysis_is_of, analysis_key
 from hangtime.bridge.rows.phases import phases_of
+from hangtime.operators.solve import common
 from hangtime.operators.solve.adapt import read_wanted
 from hangtime.solver.analysis.motion_sketch import MotionSketch
 from hangtime.solver.data.recording import POSE_TOLERANCE
@@ -148,7 +149,7 @@ def assert_refused(operator: Callable[[], set[str]], armature: bpy.types.Object,
         (empty_action, "has no keyframes"),
         (posed_by_another, "has no keyframes: constraints pose it after Source; bake it (Pose >"),
         (muted_strip, "cannot be read: Take is muted. Leave one strip unmuted"),
-        (unused_strip, "cannot be read: Take would play if the nonlinear animation were not"),
+        (unused_strip, "were not switched off. Leave one strip unmuted"),
         (edit_mode, "Leave edit mode first"),
         (too_short, "The chosen frames, 110 to 120, are only 0.08 s of the recording"),
         (backwards, "end at 99, before they begin at 110; swap them"),
@@ -166,6 +167,40 @@ def test_what_cannot_be_analysed_is_said_and_changes_nothing(
 ) -> None:
     spoil(jump)
     assert_refused(bpy.ops.hangtime.analyze, jump, says)
+
+
+def test_a_long_precondition_tells_scripts_what_is_wrong_and_what_to_do(
+    jump: bpy.types.Object, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Blender passes on 200 bytes of it."""
+    muted_strip(jump)
+    jump.animation_data.nla_tracks[0].strips[0].name = long = "Ä take with a long name " * 2
+    with pytest.raises(RuntimeError) as caught:
+        bpy.ops.hangtime.analyze()
+    told = str(caught.value).strip().partition(".poll() ")[2]
+    begins = "The NLA strips that “forward_jump_116cm” performs cannot be read:"
+    ends = (
+        "Leave one strip unmuted that plays its action once (any start, any scale), or assign the "
+        "action."
+    )
+    assert told.startswith(begins)
+    assert told.endswith(f" … {ends}") or told.endswith(f" {ends}")
+    assert len(told.encode()) <= 200
+    assert f"{begins} {long} is muted. {ends}" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("size", [199, 200, 201])
+@pytest.mark.usefixtures("jump")
+def test_a_precondition_is_whole_as_long_as_blender_passes_it_on(
+    monkeypatch: pytest.MonkeyPatch, size: int
+) -> None:
+    why = "Wrong; " + ("do this and that " * 20)[: size - 8] + "!"
+    assert len(why.encode()) == size
+    monkeypatch.setattr(common, "hindrance", lambda _: why)
+    with pytest.raises(RuntimeError) as caught:
+        bpy.ops.hangtime.analyze()
+    assert (why in str(caught.value)) == (size <= 200)
+    assert str(caught.value).strip().endswith("!")
 
 
 def test_a_driver_in_error_and_a_limit_that_is_not_reached_leave_keys_as_they_are(
