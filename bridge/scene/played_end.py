@@ -12,10 +12,14 @@ from ..properties.settings import action_settings, scene_settings
 
 def play_longer(
     scene: bpy.types.Scene, armature: bpy.types.Object, result: bpy.types.Action
-) -> None:
+) -> bool:
     """Where a scene plays to its end what an armature's result was made from, it plays the result
-    to its own; and with it the armature's other scenes that have ended where it did."""
+    to its own; and with it the armature's other scenes that have ended where it did. But not where
+    the artist has set the end back since. Whether the scene's end has changed."""
     kept, (before, last) = scene_settings(scene), _ends(armature, result)
+    ended = scene.frame_end
+    if kept.own_end <= ended < kept.lengthened_to:
+        return False
     others = [each for each in armature.users_scene if each != scene]
     alike = [each for each in others if each.frame_end == scene.frame_end]
     if scene.frame_end != kept.lengthened_to:  # the artist's own, from which all counts anew
@@ -30,6 +34,7 @@ def play_longer(
         if each.frame_end != its.lengthened_to:
             its.own_end = each.frame_end
         each.frame_end = its.lengthened_to = scene.frame_end
+    return bool(scene.frame_end != ended)
 
 
 def play_what_is_left(armature: bpy.types.Object) -> None:

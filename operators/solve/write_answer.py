@@ -87,6 +87,7 @@ FORMS = {
     WrittenAs.COMBINE: "strip",
     WrittenAs.SLOT: "slot",
 }
+SCENE_LONGER = "{} scene now ends at frame {}"
 MARKERS_LEFT_OUT = (
     "Contact markers are left out: an action's are those of all of its slots, the take's included; "
     "choose Timeline"
@@ -115,10 +116,13 @@ def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
         _tell_aimed(asked, armature, answer.track)
     remarks = note_surfaces(armature, asked, answer.report, stale)
     settings = settings_of(armature)
-    play_longer(current_scene(), armature, present(settings.adapted))
+    scene, told = current_scene(), [settings.status, *remarks]
+    if play_longer(scene, armature, present(settings.adapted)):
+        told.append(SCENE_LONGER.format("The", scene.frame_end))
+        remarks.append(SCENE_LONGER.format("the", scene.frame_end))
     refined = asked.problem.requests.solution.method is Method.EXPLICIT
     action_settings(present(settings.adapted)).refined = refined
-    settings.status = "\n".join([settings.status, *remarks])
+    settings.status = "\n".join(told)
     look_soon()  # the result before has its own settings again
     return "; ".join([done, *remarks])
 

@@ -119,6 +119,7 @@ def test_a_longer_jump_has_more_frames_and_is_played_to_its_end(
     adapted = analysed.animation_data.action
     assert adapted.frame_range[1] > recorded.frame_range[1] + 3
     assert adapted.frame_range[1] <= scene.frame_end < adapted.frame_range[1] + 1
+    assert f"The scene now ends at frame {scene.frame_end}" in analysed.hangtime.status
     assert re.search(r"Flight 1: 0\.\d\d s, was 0\.4\d s", analysed.hangtime.status)
     assert "Flight 1    takes 0." in adapted.hangtime.report
 

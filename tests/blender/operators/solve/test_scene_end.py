@@ -29,8 +29,9 @@ def _figures() -> None:
         rigs.animate(rigs.make_armature(name=name), frames=(1, END))
 
 
-def make(name: str, last: int) -> None:
-    """A result of an armature, by the recording's name and its own last frame."""
+def make(name: str, last: int) -> bool:
+    """A result of an armature, by the recording's name and its own last frame. Whether the scene is
+    longer by it."""
     armature = bpy.data.objects[name]
     recorded = armature.animation_data.action
     result = recorded.copy()
@@ -39,7 +40,7 @@ def make(name: str, last: int) -> None:
     for curve in curves_of(armature, result):
         curve.keyframe_points[-1].co.x = last
         curve.update()
-    play_longer(bpy.context.scene, armature, result)
+    return play_longer(bpy.context.scene, armature, result)
 
 
 def discard(name: str, last: int) -> None:
@@ -93,6 +94,28 @@ def test_it_stays_where_the_artist_has_put_it_since() -> None:
     for name, last in MADE.items():
         discard(name, last)
         assert bpy.context.scene.frame_end == 65
+
+
+@pytest.mark.usefixtures("_figures")
+@pytest.mark.parametrize("end", [50, 55, 59])
+def test_what_the_artist_set_back_is_not_lengthened_again(end: int) -> None:
+    assert make("A", 60)
+    bpy.context.scene.frame_end = end
+    for last in (61, 62):
+        assert not make("A", last)
+        assert bpy.context.scene.frame_end == end
+    for last in (60, 61, 62):
+        discard("A", last)
+        assert bpy.context.scene.frame_end == end
+
+
+@pytest.mark.usefixtures("_figures")
+def test_a_scene_that_is_made_shorter_for_another_clip_is_lengthened_again() -> None:
+    make("A", 60)
+    bpy.context.scene.frame_end = 40
+    rigs.animate(rigs.make_armature(name="C"), frames=(1, 40))
+    assert make("C", 45)
+    assert bpy.context.scene.frame_end == 45
 
 
 @pytest.mark.usefixtures("_figures")
