@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import bpy
 
@@ -13,6 +13,8 @@ OperatorResult = set[Literal["RUNNING_MODAL", "CANCELLED", "FINISHED", "PASS_THR
 
 NOT_OURS = "Hangtime has no operator “{}”"
 
+# Of a file's path that may begin with "//", the folder of the .blend file: else Blender warns.
+FROM_BLEND: set[Any] = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) else set()
 MOST_BYTES = 200  # of a precondition's sentence that Blender passes on to scripts
 TAIL_BYTES = 120  # of these for its end, which says what to do
 

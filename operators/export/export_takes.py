@@ -15,7 +15,7 @@ from ...bridge.rows.choices import Engine, FileFormat, RootMotion
 from ...bridge.takes.takes import bake_shown, takes_of, unphysical_since
 from ...solver.data.faults import OutputNotWritable
 from ..names import OperatorId
-from ..operator_types import OperatorResult
+from ..operator_types import FROM_BLEND, OperatorResult
 from ..solve.common import (
     TWEAK_MODE,
     FaultyOperator,
@@ -75,7 +75,7 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
     )
     bl_options = {"PRESET"}
 
-    filepath: bpy.props.StringProperty(subtype="FILE_PATH")
+    filepath: bpy.props.StringProperty(subtype="FILE_PATH", options=FROM_BLEND)
     check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
     filter_glob: bpy.props.StringProperty(
         default=";".join(f"*{ending}" for ending in ENDINGS.values()), options={"HIDDEN"}

@@ -23,7 +23,7 @@ from ...solver.data.scene import SceneObject
 from ...solver.data.solver_options import Method
 from ..headless.outbox import Outbox
 from ..names import OperatorId
-from ..operator_types import OperatorResult
+from ..operator_types import FROM_BLEND, OperatorResult
 from ..solve.adapt import ask_for, unanalysed
 from ..solve.common import FaultyOperator, required_armature
 from ..solve.keys import key_options
@@ -43,6 +43,7 @@ class ExportRecipeOperator(FaultyOperator, bpy.types.Operator, ExportHelper):  #
     )
 
     filename_ext = ".toml"
+    filepath: bpy.props.StringProperty(subtype="FILE_PATH", options=FROM_BLEND)
     filter_glob: bpy.props.StringProperty(default="*.toml", options={"HIDDEN"})
 
     @classmethod
@@ -50,7 +51,7 @@ class ExportRecipeOperator(FaultyOperator, bpy.types.Operator, ExportHelper):  #
         return unanalysed(context)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:  # type: ignore[override]
-        if not self.filepath:  # type: ignore[has-type]
+        if not self.filepath:
             folder = Path(bpy.data.filepath).parent if bpy.data.filepath else Path()
             self.filepath = str(folder / f"{required_armature(context).name}.toml")
         return ExportHelper.invoke(self, context, event)  # type: ignore[func-returns-value, return-value]

@@ -11,7 +11,7 @@ from ...bridge.plots.charts import kept_takes
 from ...bridge.plots.curves import table
 from ..headless.outbox import Outbox
 from ..names import OperatorId
-from ..operator_types import OperatorResult
+from ..operator_types import FROM_BLEND, OperatorResult
 from ..solve.common import FaultyOperator, chosen_armature, required_armature
 
 NOTHING_TO_PLOT = "Press Analyze first: there is no motion to plot"
@@ -28,6 +28,7 @@ class SavePlotsOperator(FaultyOperator, bpy.types.Operator, ExportHelper):  # ty
     )
 
     filename_ext = ".csv"
+    filepath: bpy.props.StringProperty(subtype="FILE_PATH", options=FROM_BLEND)
     filter_glob: bpy.props.StringProperty(default="*.csv", options={"HIDDEN"})
 
     @classmethod
@@ -36,7 +37,7 @@ class SavePlotsOperator(FaultyOperator, bpy.types.Operator, ExportHelper):  # ty
         return NOTHING_TO_PLOT if armature is None or not kept_takes(armature) else None
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:  # type: ignore[override]
-        if not self.filepath:  # type: ignore[has-type]
+        if not self.filepath:
             folder = Path(bpy.data.filepath).parent if bpy.data.filepath else Path()
             self.filepath = str(folder / f"{required_armature(context).name} plots.csv")
         return ExportHelper.invoke(self, context, event)  # type: ignore[func-returns-value, return-value]

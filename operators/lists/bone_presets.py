@@ -19,7 +19,7 @@ from ...bridge.constraints.bone_presets import (
 )
 from ...bridge.properties.settings import settings_of
 from ..names import OperatorId
-from ..operator_types import OperatorResult
+from ..operator_types import FROM_BLEND, OperatorResult
 from ..solve.common import FaultyOperator, chosen_armature, required_armature
 
 NO_ARMATURE = "Choose or select an armature first"
@@ -124,7 +124,7 @@ class ImportBonePresetOperator(_BonePreset, bpy.types.Operator, ImportHelper):  
     bl_options = {"REGISTER", "UNDO"}
 
     filename_ext = SUFFIX
-    filepath: bpy.props.StringProperty(subtype="FILE_PATH")
+    filepath: bpy.props.StringProperty(subtype="FILE_PATH", options=FROM_BLEND)
     filter_glob: bpy.props.StringProperty(default=f"*{SUFFIX}", options={"HIDDEN"})
 
     def run(self, context: bpy.types.Context) -> OperatorResult:
@@ -142,7 +142,7 @@ class ExportBonePresetOperator(_BonePreset, bpy.types.Operator, ExportHelper):  
     bl_description = "Write which bone moves which part of the body into a file, to hand on"
 
     filename_ext = SUFFIX
-    filepath: bpy.props.StringProperty(subtype="FILE_PATH")
+    filepath: bpy.props.StringProperty(subtype="FILE_PATH", options=FROM_BLEND)
     filter_glob: bpy.props.StringProperty(default=f"*{SUFFIX}", options={"HIDDEN"})
 
     def run(self, context: bpy.types.Context) -> OperatorResult:

@@ -64,6 +64,25 @@ def test_the_world_s_objects_come_along(analysed: bpy.types.Object, tmp_path: Pa
         )
 
 
+@pytest.mark.usefixtures("analysed")
+def test_a_path_from_the_file_s_folder_on_gives_no_warning(
+    tmp_path: Path, recwarn: pytest.WarningsRecorder
+) -> None:
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    assert bpy.ops.hangtime.export_recipe(filepath="//there.toml") == {"FINISHED"}
+    assert (tmp_path / "there.toml").is_file()
+    assert [str(warning.message) for warning in recwarn] == []
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 5, 0), reason="Blender does not ask for it")
+@pytest.mark.parametrize(
+    "asked", ["export", "export_recipe", "save_plots", "export_bone_preset", "import_bone_preset"]
+)
+def test_every_path_may_begin_at_the_file_s_folder(asked: str) -> None:
+    path = getattr(bpy.ops.hangtime, asked).get_rna_type().properties["filepath"]
+    assert path.is_path_supports_blend_relative
+
+
 def test_contacts_and_times_that_the_artist_changed_come_along(
     analysed: bpy.types.Object, tmp_path: Path
 ) -> None:
