@@ -2,8 +2,10 @@
 
 import bpy
 
-from ...bridge.accessors import current_action, present, source_of
+from ...bridge.accessors import armature_data, current_action, present, source_of
+from ...bridge.action_slots import all_curves
 from ...bridge.armature.actions import recorded_action, show
+from ...bridge.armature.fcurves import bone_of
 from ...bridge.libraries import lost_file
 from ...bridge.polish.renewal import is_kept
 from ...bridge.properties.settings import action_settings, settings_of
@@ -24,6 +26,7 @@ from .common import ReadyOperator, required_armature, said, unready
 NO_RESULT_SHOWN = "The recording is shown; show the result to start from"
 BESIDE = "The armature {} performs {}, as its limbs are others"
 GONE = "The action {} is not there any more"
+NO_KEYS = "The action {} has no keys for bones of {}; choose one of its takes"
 LEFT_BEHIND = (
     "Keys of {} were edited by hand. The next result starts from {} again, without these edits; "
     "{} is kept. {}"
@@ -72,6 +75,8 @@ class ShowTakeOperator(PolledOperator, bpy.types.Operator):
         lost = lost_file(action)
         if lost is not None:
             return self.refuse(said(lost))
+        if not _could_show(armature, action):
+            return self.refuse(NO_KEYS.format(action.name, armature.name))
         performer = action_settings(action).performer
         if performer not in (None, armature):
             return self.refuse(BESIDE.format(performer.name, action.name))
@@ -89,6 +94,14 @@ def _named(armature: bpy.types.Object, name: str) -> bpy.types.Action | None:
     found = [a for a in own if a.name_full == name] or [a for a in own if a.name == name]
     found = found or [a for a in bpy.data.actions if a.name_full == name]
     return found[0] if found else None
+
+
+def _could_show(armature: bpy.types.Object, action: bpy.types.Action) -> bool:
+    """Whether an action is a take of an armature, or could be one by its keys."""
+    if action in [take.action for take in takes_of(armature)]:
+        return True
+    bones = set(armature_data(armature).bones.keys())
+    return any(bone_of(curve.data_path) in bones for curve in all_curves(action))
 
 
 class StartFromOperator(ReadyOperator, bpy.types.Operator):

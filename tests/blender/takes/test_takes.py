@@ -445,6 +445,15 @@ def test_what_is_discarded_is_what_is_shown(armature: bpy.types.Object) -> None:
     assert armature.hangtime.contacts[0].at[2] == pytest.approx(0.2)
 
 
+def test_the_action_of_something_else_is_no_take(armature: bpy.types.Object) -> None:
+    recording = current_action(armature)
+    cart = bpy.data.objects.new("Cart", None)
+    cart.keyframe_insert("location", frame=1)
+    with pytest.raises(RuntimeError, match="has no keys for bones of Rig; choose one of its takes"):
+        bpy.ops.hangtime.show_take(action=cart.animation_data.action.name)
+    assert current_action(armature) == recording
+
+
 def test_what_is_shown_in_the_place_of_a_result_is_named(armature: bpy.types.Object) -> None:
     recording = current_action(armature)
     adapt(armature, 10, 20, 0.1)
