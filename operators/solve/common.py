@@ -16,7 +16,7 @@ from ...bridge.properties.settings import (
     settings_of,
 )
 from ...bridge.worker_client import shared
-from ...solver.data.faults import Fault, NoArmature
+from ...solver.data.faults import Fault, NoArmature, NotInScene
 from ...solver.data.solver_options import Method, ObjectiveKind, SolverOptions
 from ..operator_types import OperatorResult, PolledOperator
 from ..words.failure_text import Failure, failure_of
@@ -63,11 +63,22 @@ def _beside(armature: bpy.types.Object) -> bpy.types.Object | None:
 
 
 def required_armature(context: bpy.types.Context) -> bpy.types.Object:
-    """The same. Raises NoArmature, for it may have been deleted since the button was pressed."""
+    """The same. Raises NoArmature and NotInScene, for it may have gone since the button was
+    pressed."""
     armature = chosen_armature(context)
     if armature is None:
-        raise NoArmature(None)
+        raise why_no_armature(context)
     return armature
+
+
+def why_no_armature(context: bpy.types.Context) -> Fault:
+    """Why there is no target armature."""
+    scene = present(context.scene)
+    chosen = scene_settings(scene).armature
+    if chosen is not None and chosen.users_scene and not _is_in(chosen, scene):
+        return NotInScene(chosen.name, scene.name)
+    active = present(context.view_layer).objects.active
+    return NoArmature(active.name if active is not None else None)
 
 
 def hindrance(context: bpy.types.Context) -> str | None:
@@ -88,8 +99,7 @@ def unready(context: bpy.types.Context) -> str | None:
     if at_work():
         return BUSY
     if armature is None or armature.type != "ARMATURE":
-        active = present(context.view_layer).objects.active
-        return said(NoArmature(active.name if active is not None else None))
+        return said(why_no_armature(context))
     lost = lost_character(armature)
     if lost is not None:
         return said(lost)

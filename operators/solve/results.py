@@ -13,10 +13,18 @@ from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.scene.played_end import play_what_is_left
 from ...bridge.takes.takes import bake_shown, results_from, unphysical_since
 from ...bridge.takes.write_result import remove_slot
-from ...solver.data.faults import NoArmature
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
-from .common import BUSY, TWEAK_MODE, at_work, chosen_armature, required_armature, said, tweaked
+from .common import (
+    BUSY,
+    TWEAK_MODE,
+    at_work,
+    chosen_armature,
+    required_armature,
+    said,
+    tweaked,
+    why_no_armature,
+)
 from .session import session
 
 NOTHING_ADAPTED = "Nothing has been adapted yet"
@@ -137,7 +145,7 @@ class ShowRecordingOperator(PolledOperator, bpy.types.Operator):
     def obstacle(cls, context: bpy.types.Context) -> str | None:
         armature = chosen_armature(context)
         if armature is None:
-            return said(NoArmature(None))
+            return said(why_no_armature(context))
         if current_action(armature) is None:
             return said(why_no_action(armature))
         if current_action(armature) == recorded_action(armature):

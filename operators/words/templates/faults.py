@@ -9,6 +9,8 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
         "No armature is chosen; select the armature that carries the recording.",
         "“{object_name}” is or holds no armature; choose one with a recording.",
     ),
+    faults.NotInScene: "“{armature}” is not in scene “{scene}”; link it there, go to its own, "
+    "or select another armature.",
     faults.NoAction: "The armature “{armature}” has no keyframes; assign it the action that holds "
     "the recording.",
     faults.UnreadStrips: "The NLA strips that “{armature}” performs cannot be read: {strips:names} "

@@ -31,6 +31,7 @@ from .recordings import NoSpine as NoSpine
 from .recordings import NotBetweenFrames as NotBetweenFrames
 from .recordings import NothingLeft as NothingLeft
 from .recordings import NotInFile as NotInFile
+from .recordings import NotInScene as NotInScene
 from .recordings import NotJoined as NotJoined
 from .recordings import NotMirrored as NotMirrored
 from .recordings import NotPutIn as NotPutIn

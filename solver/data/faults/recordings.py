@@ -16,6 +16,14 @@ class NoArmature(Fault):
 
 
 @dataclass
+class NotInScene(Fault):
+    """The armature that was chosen is in other scenes, not in the one that is shown."""
+
+    armature: str
+    scene: str
+
+
+@dataclass
 class NoAction(Fault):
     """The armature carries no action."""
 

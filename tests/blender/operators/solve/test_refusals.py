@@ -42,6 +42,18 @@ def no_armature(_armature: bpy.types.Object) -> None:
     bpy.context.view_layer.objects.active = None
 
 
+def in_another_scene(armature: bpy.types.Object) -> None:
+    scene = bpy.context.scene
+    scene.hangtime.armature = armature
+    bpy.data.scenes.new("Other").collection.objects.link(armature)
+    for collection in [each for each in armature.users_collection if each in scene_tree(scene)]:
+        collection.objects.unlink(armature)
+
+
+def scene_tree(scene: bpy.types.Scene) -> list[bpy.types.Collection]:
+    return [scene.collection, *scene.collection.children_recursive]
+
+
 def another_object(_armature: bpy.types.Object) -> None:
     empty = bpy.data.objects.new("Cube", None)
     bpy.context.scene.collection.objects.link(empty)
@@ -144,6 +156,7 @@ def assert_refused(operator: Callable[[], set[str]], armature: bpy.types.Object,
     ("spoil", "says"),
     [
         (no_armature, "No armature is chosen"),
+        (in_another_scene, "“forward_jump_116cm” is not in scene “Scene”; link it there"),
         (another_object, "“Cube” is or holds no armature"),
         (no_action, "has no keyframes"),
         (empty_action, "has no keyframes"),
