@@ -98,6 +98,8 @@ def _variant(fault: Fault) -> int:
             return max(i for i, each in enumerate((True, *carrying, *mistaken)) if each)
         case faults.UnseenSupports():
             return fault.leaning
+        case faults.NoFaceThere():
+            return fault.reach is not None
         case faults.UnknownObject():
             return bool(fault.known)
         case faults.ChangedMeanwhile() | faults.RateChanged():

@@ -86,7 +86,8 @@ def _stand(
     centre = points.mean(axis=0)
     middle = ground.mesh.heights(centre[None, :2])
     if not np.isfinite(middle.z[0]):
-        raise NoFaceThere(ground.pin, names[0], ground.thing.name)
+        x, y = centre[:2].tolist()
+        raise NoFaceThere(ground.pin, names[0], ground.thing.name, (x, y), _reach(ground.mesh))
     if middle.normal[0, 2] <= 0.0:
         raise InsideOut(ground.thing.name)
     centre[2] = middle.z[0]
@@ -103,6 +104,13 @@ def _stand(
     for i in np.flatnonzero(np.abs(off) > LEVELLED)[:1]:
         raise OverTheEdge(ground.pin, names[i], ground.thing.name, float(np.abs(off[i])))
     return placed, found.normal
+
+
+def _reach(mesh: TriangleMesh) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Least and greatest x, and y, m, of a mesh's corners."""
+    corners = mesh.tree.triangles.reshape(-1, 3)
+    (x, y, _), (x_most, y_most, _) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
+    return (x, x_most), (y, y_most)
 
 
 def _tilt(slope: FloatArray) -> FloatArray:

@@ -377,8 +377,14 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     ),
     faults.NotGround: "“{request}” stands on “{thing}”, which is an obstacle; make it ground, or "
     "stand on something else.",
-    faults.NoFaceThere: "“{request}” stands on “{thing}”, but “{contact}” would be beside it: none "
-    "of its faces is above or below; move the pin over it, or the object under the pin.",
+    faults.NoFaceThere: (
+        "“{request}” stands on “{thing}”, but “{contact}” would be beside it: none of its faces "
+        "is above or below; move the pin over it, or the object under the pin.",
+        "“{request}” stands on “{thing}”, but “{contact}” would be beside it, at "
+        "x = {at[0]:.2f} m, y = {at[1]:.2f} m; it reaches over x = {reach[0][0]:.2f} to "
+        "{reach[0][1]:.2f} m, y = {reach[1][0]:.2f} to {reach[1][1]:.2f} m. Move the pin over it, "
+        "or the object under the pin.",
+    ),
     faults.OverTheEdge: "“{request}” stands on “{thing}”, but “{contact}” hangs over the edge of "
     "its face by {metres:length}; move the pin so far, or turn it.",
     faults.TooSteep: "“{request}” stands on “{thing}” where it is {slope:.0f}° steep, and "

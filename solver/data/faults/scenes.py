@@ -86,10 +86,16 @@ class NotGround(RequestFault):
 
 @dataclass
 class NoFaceThere(RequestFault):
-    """No face of the object is above or below where a pin's contact would be."""
+    """No face of the object is above or below where a pin's contact would be.
+
+    at: (x, y) m of that, world. reach: (least x, greatest x) and (least y, greatest y) of the
+    object, m, world. Both None of an object that is put under the pin, at its own origin.
+    """
 
     contact: str
     thing: str
+    at: tuple[float, float] | None = None
+    reach: tuple[tuple[float, float], tuple[float, float]] | None = None
 
 
 @dataclass

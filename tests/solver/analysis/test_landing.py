@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hangtime.operators.words.messages import sentence
 from hangtime.solver.analysis.landing import Footing
 from hangtime.solver.analysis.pinned_places import chosen_contacts, phase_of, pinned_footing
 from hangtime.solver.arrays import FloatArray
@@ -95,6 +96,17 @@ def test_half_a_foot_over_the_edge_is_told_by_how_much() -> None:
 def test_what_cannot_be_stood_on_is_refused(fault: type[Fault], crate: SceneObject) -> None:
     with pytest.raises(fault):
         footing(crate)
+
+
+def test_of_what_is_beside_an_object_both_places_are_told() -> None:
+    with pytest.raises(NoFaceThere) as caught:
+        footing(thing("Crate", box((1.0, 2.0, 1.0)), (9.0, -1.0, 0.0)))
+    x, y = middle()[:2]  # of both feet, which stand within a stride of it
+    at = caught.value.at
+    assert at is not None
+    assert np.hypot(at[0] - x, at[1] - y) < 0.5
+    told = f"at x = {at[0]:.2f} m, y = {at[1]:.2f} m; it reaches over x = 8.50 to 9.50 m, y = -2.00"
+    assert told in sentence(caught.value)
 
 
 def test_a_sheet_that_looks_down_is_inside_out() -> None:
