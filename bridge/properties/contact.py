@@ -122,8 +122,8 @@ class HangtimeStance(bpy.types.PropertyGroup):
     shifted: hidden(vector())
     turned: hidden(number())
 
-    forward: _shift(0, "Forward", "Move the stance along the jump's travel")
-    left: _shift(1, "Left", "Move the stance to the left of the jump's travel")
+    forward: _shift(0, "Forward", "Move the stance along the way of the motion")
+    left: _shift(1, "Left", "Move the stance to the left of the way of the motion")
     up: _shift(2, "Up", "Raise or lower the stance")
     turn: chosen(
         angle(

@@ -96,18 +96,22 @@ def starter_recipe(
     file: FileReading | None = None,
     repairs: Repairs | None = None,
 ) -> str:
-    """A commented recipe that pins the first landing where it is, for the artist to change. file:
-    what was stated of how the clip is read. repairs: that it got."""
+    """A commented recipe that pins the first landing (of a motion without a flight what there is)
+    where it is, for the artist to change. file: what was stated of how the clip is read. repairs:
+    that it got."""
     recording = analysis.performance.recording
     landing = _first_landing(analysis)
     contacts = () if landing is None else analysis.schedule.of_phase(landing)
+    backwards = backward_stances(analysis.performance, analysis.schedule)
+    jumps = bool(analysis.schedule.flights)
+    what = "jump" if jumps else "motion"
     phases, found = (
         [f"#   {each.name}: {_span(analysis, each.start, each.end)}" for each in several]
         for several in (analysis.schedule.phases, analysis.schedule.contacts)
     )
     return "\n".join(
         [
-            "# What to change in a recorded jump. Metres, degrees, the scene's frames.",
+            f"# What to change in a recorded {what}. Metres, degrees, the scene's frames.",
             f"clip = {_quoted(relative(clip, recipe))}",
             f"frames = [{recording.frames[0] + 0.0:g}, {recording.frames[-1]:g}]",
             f"mass = {problem.mass:g}  # kg",
@@ -120,7 +124,7 @@ def starter_recipe(
             "# Phases found, with their frames:",
             *phases,
             "",
-            *_pin(landing, contacts, backward_stances(analysis.performance, analysis.schedule)),
+            *_pin(landing, contacts, backwards, jumps=jumps),
             "# Contacts found, with their frames; correct one by its name:",
             *found,
             "# [[contact]]",
@@ -139,18 +143,21 @@ def _height(analysis: Analysis, problem: MotionProblem) -> str:
     return f"# height = {measured:.2f}  # m, as measured; another one scales the figure"
 
 
-def _pin(landing: Phase | None, contacts: Sequence[Contact], backwards: Sequence[str]) -> list[str]:
-    """backwards: the ground phases whose forward is at the body's back."""
+def _pin(
+    landing: Phase | None, contacts: Sequence[Contact], backwards: Sequence[str], *, jumps: bool
+) -> list[str]:
+    """backwards: the ground phases whose forward is at the body's back. jumps: whether it flies."""
     if landing is None:
-        return ["# Nothing touches here, so there is no landing to pin.", ""]
+        return ["# Nothing touches here, so there is nothing to pin.", ""]
+    name, way = ("Landing", "the jump") if jumps else ("Stance", "its way")
     there = ", which is at the body's back" if landing.name in backwards else ""
     points = ", ".join(dict.fromkeys(_quoted(c.point) for c in contacts))
     return [
         "[[pin]]",
-        'name = "Landing"',
+        f"name = {_quoted(name)}",
         f"phase = {_quoted(landing.name)}",
         f"# points = [{points}]  # only these; else all that touches",
-        f"forward = 0.0  # along the jump{there}; negative is back",
+        f"forward = 0.0  # along {way}{there}; negative is back",
         "left = 0.0",
         "up = 0.0",
         "turn = 0  # counter-clockwise from above",

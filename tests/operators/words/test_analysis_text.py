@@ -27,6 +27,18 @@ def test_long_names_of_bones_leave_their_column_whole() -> None:
         assert line[at[1] - 1] == " "
 
 
+def test_a_recipe_for_a_motion_without_a_flight_speaks_of_no_jump() -> None:
+    analysis = hop()
+    end = analysis.schedule.flights[0].start
+    standing = replace(analysis, schedule=analysis.schedule.part(0.0, end))
+    for found, jumps in ((analysis, True), (standing, False)):
+        text = starter_recipe(found, MotionProblem(), Path("a.bvh"), Path("a.toml"))
+        assert ("jump" in text) is jumps
+        assert [pin.name for pin in parse_recipe(text).problem.pins] == (
+            ["Landing"] if jumps else ["Stance"]
+        )
+
+
 def test_a_recipe_for_a_clip_in_which_nothing_touches_pins_nothing() -> None:
     analysis = hop()
     flying = replace(analysis, schedule=ContactSchedule((), analysis.schedule.duration, 0.0))
