@@ -56,12 +56,14 @@ PIN = Kind(
     (
         phase("phase"),
         TOUCHING,
+        word("step"),
         Item((*TRAVEL_WORDS, "offset"), _read_offset, _write_offset),
         vector("place"),
         angle("turn"),
         word("on"),
     ),
     needs=(("phase",),),
+    excludes=(("step", "points", "bones"),),
 )
 CONTACT = Kind(
     "contact",

@@ -13,7 +13,8 @@ good_enough = 0.002             # m by which a contact that cannot be held exact
 [[pin]]                         # any number of them
 name = "Landing"                # optional
 phase = "ground 2"              # as the analysis prints them, in any capitals
-points = ["Left heel"]          # or bones = [...]; default: everything that touches in the phase
+points = ["Left heel"]          # or bones = [...]; default: everything that touches in the phase;
+                                # or step = "Left heel 2": that foot, heel and toe, this once
 forward = 0.3                   # m along the travel; left, up; back, right, down;
                                 # or offset = [x, y, z], world
 place = [0.0, 1.0, 0.2]         # m, world: where the middle of the points goes, optional

@@ -11,7 +11,7 @@ from ...bridge.recipe.recording import FILE, RECORDING, FileReading
 from ...bridge.recipe_syntax.toml_text import sections
 from ...solver.analysis.analyse import Analysis
 from ...solver.analysis.pinned_places import backward_stances
-from ...solver.data.contacts import Contact, Phase, PhaseKind
+from ...solver.data.contacts import Contact, Phase, PhaseKind, footfalls, takes_steps
 from ...solver.data.faults import UnseenSupport
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
@@ -125,6 +125,7 @@ def starter_recipe(
             *phases,
             "",
             *_pin(landing, contacts, backwards, jumps=jumps),
+            *_steps(analysis, contacts),
             "# Contacts found, with their frames; correct one by its name:",
             *found,
             "# [[contact]]",
@@ -152,17 +153,32 @@ def _pin(
     name, way = ("Landing", "the jump") if jumps else ("Stance", "its way")
     there = ", which is at the body's back" if landing.name in backwards else ""
     points = ", ".join(dict.fromkeys(_quoted(c.point) for c in contacts))
+    step = [f"# step = {_quoted(contacts[0].name)}  # only this foot and time, see below"]
     return [
         "[[pin]]",
         f"name = {_quoted(name)}",
         f"phase = {_quoted(landing.name)}",
         f"# points = [{points}]  # only these; else all that touches",
+        *(step if takes_steps([c.touch for c in contacts]) else []),
         f"forward = 0.0  # along {way}{there}; negative is back",
         "left = 0.0",
         "up = 0.0",
         "turn = 0  # counter-clockwise from above",
         "",
     ]
+
+
+def _steps(analysis: Analysis, contacts: Sequence[Contact]) -> list[str]:
+    """The footfalls of a phase in which feet come down again; a pin moves each by itself."""
+    touches = [c.touch for c in contacts]
+    if not takes_steps(touches):
+        return []
+    told = ["# Its steps, with their frames; name any contact of one as the pin's “step”:"]
+    for mine in footfalls(touches):
+        step = [contacts[i] for i in mine]
+        span = _span(analysis, min(c.start for c in step), max(c.end for c in step))
+        told.append(f"#   {', '.join(c.name for c in step)}: {span}")
+    return [*told, ""]
 
 
 def _bones(problem: MotionProblem) -> list[str]:

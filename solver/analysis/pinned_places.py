@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.constants import UP
-from ..data.contacts import ContactSchedule, Phase, PhaseKind
+from ..data.contacts import ContactSchedule, Phase, PhaseKind, footfalls
 from ..data.faults import BeyondPrecision, ContradictoryPins, UnknownContact, UnknownPhase
 from ..data.problem import MotionProblem, OffsetAxes, Pin
 from ..data.scene import SceneObject
@@ -104,6 +104,8 @@ def chosen_contacts(pin: Pin, phase: Phase, schedule: ContactSchedule) -> list[i
     there = [
         i for i, c in enumerate(schedule.contacts) if c.start < phase.end and c.end > phase.start
     ]
+    if pin.step is not None:
+        return _step(pin, pin.step, there, schedule)
     if not pin.touching:
         return there
     chosen = []
@@ -120,6 +122,17 @@ def chosen_contacts(pin: Pin, phase: Phase, schedule: ContactSchedule) -> list[i
             raise UnknownContact(pin.name, what, tuple(known))
         chosen += [i for i in hits if i not in chosen]
     return chosen
+
+
+def _step(pin: Pin, step: str, there: list[int], schedule: ContactSchedule) -> list[int]:
+    """Those of the contacts that are there which are of one footfall with one of them, by its name.
+    Raises UnknownContact."""
+    names = [schedule.contacts[i].name for i in there]
+    if step not in names:
+        raise UnknownContact(pin.name, step, tuple(names))
+    steps = footfalls([schedule.contacts[i].touch for i in there])
+    mine = next(each for each in steps if names.index(step) in each)
+    return sorted(there[k] for k in mine)
 
 
 def pinned_by(pins: Sequence[Pin], schedule: ContactSchedule) -> dict[str, str]:

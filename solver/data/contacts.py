@@ -113,6 +113,11 @@ class Contact:
     slack: float = 0.0
 
     @property
+    def touch(self) -> "Touch":
+        """Its point and its time, s."""
+        return Touch(self.point, self.start, self.end)
+
+    @property
     def asked_for(self) -> bool:
         """Whether the artist made it; those that were found are numbered."""
         return self.name == self.point
@@ -129,6 +134,42 @@ class KnownContacts:
     first: float
     last: float
     contacts: tuple[tuple[str, float, float], ...]
+
+
+@dataclass(frozen=True)
+class Touch:
+    """When a point, such as "Left heel", touches; by any clock."""
+
+    point: str
+    start: float
+    end: float
+
+    @property
+    def limb(self) -> str:
+        """Such as "Left foot"; a hand, or a point of the artist's own, is one by itself."""
+        side, _, part = self.point.rpartition(" ")
+        return f"{side} foot" if part in ("heel", "toe") else self.point
+
+
+def footfalls(touches: Sequence[Touch]) -> tuple[tuple[int, ...], ...]:
+    """Indices of touches, those of each limb together that share some time with each other or with
+    one between them: from where a foot comes down to where it leaves; by their starts."""
+    found: list[tuple[str, float, list[int]]] = []  # with the limb, and until when
+    for i in sorted(range(len(touches)), key=lambda i: touches[i].start):
+        touch = touches[i]
+        at = next((k for k, f in enumerate(found) if f[0] == touch.limb and f[1] > touch.start), -1)
+        if at < 0:
+            found.append((touch.limb, touch.end, [i]))
+        else:
+            limb, until, mine = found[at]
+            found[at] = limb, max(until, touch.end), [*mine, i]
+    return tuple(tuple(mine) for _, _, mine in found)
+
+
+def takes_steps(touches: Sequence[Touch]) -> bool:
+    """Whether a limb comes down again, as in a walk."""
+    limbs = [touches[mine[0]].limb for mine in footfalls(touches)]
+    return len(set(limbs)) < len(limbs)
 
 
 @dataclass(frozen=True)

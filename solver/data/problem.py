@@ -53,6 +53,8 @@ class Pin:
     where the contacts' centre goes instead (offset then adds to it). turn: rad about the vertical
     through the contacts' centre, counter-clockwise from above. on: name of a ground object of the
     scene; the contacts then stand on its faces, vertically below or above where they would be.
+    step: the name of a contact ("Left heel 2"); of the phase's contacts those of its foot's
+    footfall are meant, heel and toe.
     """
 
     name: str
@@ -63,6 +65,7 @@ class Pin:
     place: tuple[float, float, float] | None = None
     turn: float = 0.0
     on: str | None = None
+    step: str | None = None
 
 
 @dataclass(frozen=True)

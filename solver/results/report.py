@@ -169,6 +169,7 @@ def _pin(pin: Pin) -> PinReport:
         offset_forward_left_up_m=None if in_world else pin.offset,
         place_m=pin.place,
         turn_deg=math.degrees(pin.turn),
+        step=pin.step,
     )
 
 

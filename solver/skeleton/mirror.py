@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.faults import NotMirrored
-from ..data.problem import MotionProblem
+from ..data.problem import MotionProblem, Pin
 from ..data.recording import Bone, Recording
 from .names import split_side
 from .parts import Side
@@ -45,10 +45,15 @@ def swapped(problem: MotionProblem) -> MotionProblem:
     recording has them; places and directions stay. Twice is the problem itself."""
     return replace(
         problem,
-        pins=tuple(replace(p, touching=tuple(map(other_side, p.touching))) for p in problem.pins),
+        pins=tuple(_swapped_pin(pin) for pin in problem.pins),
         contacts=tuple(replace(c, name=other_side(c.name)) for c in problem.contacts),
         added=tuple(replace(a, point=other_side(a.point)) for a in problem.added),
     )
+
+
+def _swapped_pin(pin: Pin) -> Pin:
+    step = None if pin.step is None else other_side(pin.step)
+    return replace(pin, touching=tuple(map(other_side, pin.touching)), step=step)
 
 
 def mirrored(recording: Recording, first: float | None = None) -> Recording:

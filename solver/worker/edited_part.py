@@ -53,7 +53,7 @@ def _pinned_until(stance: Phase, pins: Sequence[Pin], schedule: ContactSchedule)
     A stance that is pushed or raised as one needs none of the later ones: all move alike.
     """
     if all(
-        not pin.touching and pin.place is None and pin.turn == 0.0
+        not pin.touching and pin.step is None and pin.place is None and pin.turn == 0.0
         for pin in pins
         if pin.phase == stance.name
     ):

@@ -66,8 +66,9 @@ class _Change:
     def _pin(self, pin: Pin, left: Sequence[Contact]) -> Pin:
         phase = self.fitted.stance(left[0])
         every = len(left) == len(self.fitted.of_phase(phase))
-        touching = () if every and not pin.touching else tuple(c.name for c in left)
-        return replace(pin, phase=phase.name, touching=touching)
+        all_meant = every and not pin.touching and pin.step is None
+        touching = () if all_meant else tuple(c.name for c in left)
+        return replace(pin, phase=phase.name, touching=touching, step=None)
 
     def requests(self, asked: Requests) -> Requests:
         """The requests, each in the phase or the frames that it was about."""

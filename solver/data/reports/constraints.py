@@ -18,6 +18,7 @@ class PinReport:
     offset_forward_left_up_m: Vector | None = field(metadata=OMIT_NONE)
     place_m: Vector | None
     turn_deg: float
+    step: str | None = field(default=None, metadata=OMIT_NONE)
 
 
 @dataclass(frozen=True)

@@ -238,6 +238,14 @@ def test_what_is_wrong_is_named_with_its_line(old: str, new: str) -> None:
     assert refused(text).line == line_of(text, new.rpartition("\n")[2])
 
 
+def test_a_pin_of_one_footfall_comes_back_as_it_was_written() -> None:
+    problem = parse_recipe('[[pin]]\nphase = "ground 1"\nstep = "Left heel 2"\n').problem
+    assert problem.pins == (Pin("Pin 1", "ground 1", step="Left heel 2"),)
+    assert parse_recipe(write_recipe(problem)).problem == problem
+    text = FULL.replace('bones = ["Fuss.L"]', 'bones = ["Fuss.L"]\nstep = "Left heel 1"')
+    assert refused(text).line == line_of(text, "step =")
+
+
 def test_two_pins_of_one_name_are_refused() -> None:
     text = FULL.replace('name = "Landing"', 'name = "Pin 2"')  # as the second is called by default
     assert refused(text).line == line_of(text, "[[pin]]\nphase")

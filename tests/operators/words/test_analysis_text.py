@@ -1,11 +1,13 @@
 """The text of an analysis."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
 from hangtime.bridge.recipe.problem import parse_recipe
 from hangtime.operators.words.analysis_text import analysis_text, starter_recipe
 from hangtime.solver.analysis.analyse import analyse
+from hangtime.solver.analysis.pinned_places import chosen_contacts, phase_of
 from hangtime.solver.data.contacts import ContactSchedule
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.reports.recording import Origin
@@ -37,6 +39,19 @@ def test_a_recipe_for_a_motion_without_a_flight_speaks_of_no_jump() -> None:
         assert [pin.name for pin in parse_recipe(text).problem.pins] == (
             ["Landing"] if jumps else ["Stance"]
         )
+
+
+def test_a_recipe_for_a_walk_lists_its_steps_and_how_to_pin_one() -> None:
+    analysis = analyse(load_recording("01_01.amc").window(1841, 2160), MotionProblem())
+    text = starter_recipe(analysis, MotionProblem(), Path("a.bvh"), Path("a.toml"))
+    first = re.search(r'# (step = ".*")  #', text)
+    assert first is not None
+    pin = parse_recipe(text.replace(first[0], f"{first[1]}  #")).problem.pins[0]
+    schedule = analysis.schedule
+    chosen = chosen_contacts(pin, phase_of(pin, schedule), schedule)
+    (told,) = re.findall(rf"#   (.*{pin.step}.*): .* to .*", text.split("# Contacts found")[0])
+    assert told.split(", ") == [schedule.contacts[i].name for i in chosen]
+    assert "step" not in starter_recipe(hop(), MotionProblem(), Path("a.bvh"), Path("a.toml"))
 
 
 def test_a_recipe_for_a_clip_in_which_nothing_touches_pins_nothing() -> None:

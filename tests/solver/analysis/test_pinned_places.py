@@ -8,10 +8,12 @@ from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.pinned_places import (
     FURTHEST,
     backward_stances,
+    chosen_contacts,
     pinned_places,
     travel_axes,
 )
 from hangtime.solver.arrays import FloatArray
+from hangtime.solver.data.contacts import Contact, ContactSchedule, numbered
 from hangtime.solver.data.faults import (
     BeyondPrecision,
     ContradictoryPins,
@@ -128,6 +130,33 @@ def test_one_foot_is_chosen_by_bone_point_or_contact(pick: str) -> None:
     moved = np.linalg.norm(after(pin) - before(), axis=1) > 1e-6
     names = {c.name for c in left}
     assert {c.name for c, m in zip(schedule.contacts, moved, strict=True) if m} == names
+
+
+def test_one_footfall_is_chosen_by_any_of_its_contacts() -> None:
+    """A walk's heel and toe of one step are numbered apart, for the toe began the clip."""
+    points = ["Left toe", "Right heel", "Left heel", "Left toe", "Left hand", "Left heel"]
+    spans = [(0.0, 0.3), (0.0, 0.6), (0.5, 0.9), (0.6, 1.2), (0.8, 1.7), (1.6, 2.0)]
+    walk = ContactSchedule(
+        numbered(
+            Contact("", point, point.replace(" ", ""), np.zeros(3), *span, np.zeros(3))
+            for point, span in zip(points, spans, strict=True)
+        ),
+        2.0,
+        0.0,
+    )
+    (phase,) = walk.stances
+    for step, meant in (
+        ("Left heel 1", {"Left heel 1", "Left toe 2"}),
+        ("Left toe 2", {"Left heel 1", "Left toe 2"}),
+        ("Left toe 1", {"Left toe 1"}),
+        ("Left heel 2", {"Left heel 2"}),
+        ("Left hand 1", {"Left hand 1"}),
+    ):
+        chosen = chosen_contacts(Pin("step", "ground 1", step=step), phase, walk)
+        assert {walk.contacts[i].name for i in chosen} == meant
+    with pytest.raises(UnknownContact) as caught:
+        chosen_contacts(Pin("step", "ground 1", step="Left heel 3"), phase, walk)
+    assert "Left heel 2" in caught.value.known
 
 
 def test_unknown_phases_are_named_with_those_there_are() -> None:

@@ -24,6 +24,9 @@ name = "Landing"
 phase = "ground 2"
 points = ["Left heel", "Left toe"]
 right = 0.05
+[[pin]]
+phase = "ground 2"
+step = "Left heel 2"
 [[contact]]
 name = "Left toe 2"
 start_frame = 100
@@ -123,6 +126,7 @@ def test_a_recipe_names_what_was_recorded_and_right_is_where_the_artist_says() -
     plain, other = (parse_recipe(RECIPE.format(word)).problem for word in ("false", "true"))
     assert plain.pins[0].touching == ("Left heel", "Left toe")
     assert other.pins[0].touching == ("Right heel", "Right toe")
+    assert (plain.pins[1].step, other.pins[1].step) == ("Left heel 2", "Right heel 2")
     assert other.contacts[0].name == "Right toe 2"
     assert other.pins[0].offset == plain.pins[0].offset == (0.0, -0.05, 0.0)
     assert parse_recipe(write_recipe(other)).problem == other
