@@ -59,8 +59,7 @@ class HangtimeContact(bpy.types.PropertyGroup):
     place: chosen(
         position(
             "Place",
-            "Where the point shall touch, in the world. Its whole stance moves along "
-            "while Move Whole Stance is on",
+            "Where the point shall touch, in the world. What Moves says goes along",
             get=_get_place,
             set=_set_place,
         )

@@ -15,6 +15,7 @@ from ...solver.data.problem import MassTable
 from ...solver.data.solver_options import ShapeSource
 from ..accessors import attached, called
 from ..fake_users import guard
+from ..rows.choices import Moves
 from ..rows.finding import CLASSES as FINDING_CLASSES
 from ..rows.finding import HangtimeFinding
 from ..rows.row import CLASSES as ROW_CLASSES
@@ -27,7 +28,7 @@ from ..rows.row import (
     declared,
     hidden,
 )
-from ..rows.stored import angle, boolean, number, target, text, vector, whole
+from ..rows.stored import angle, boolean, choice, number, target, text, vector, whole
 from . import stances
 from .body_change import CLASSES as BODY_CHANGE_CLASSES
 from .body_change import HangtimeBodyChange
@@ -84,7 +85,7 @@ class HangtimePart(bpy.types.PropertyGroup):
 class HangtimeSettings(bpy.types.PropertyGroup):
     """An armature's edit; of an empty that marks a contact, whose contact it marks."""
 
-    COMPUTED = ("active_stance",)  # from what else is stored
+    COMPUTED = ("active_stance", "moves")  # from what else is stored
 
     marks: hidden(target(poll=_is_armature))
 
@@ -137,12 +138,18 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     active_stance: hidden(
         whole("Stance", "Stance at work", get=_get_active_stance, set=_set_active_stance)
     )
-    whole_stance: chosen(
-        boolean(
-            "Move Whole Stance",
-            "Moving a contact moves every contact of its phase, so that heels and toes "
-            "stay as far apart as the feet are long",
-            default=True,
+    # As `moves` was in earlier versions, whose files and scripts have it.
+    whole_stance: hidden(boolean(default=True), update=stances.take_whole_stance)
+    moving: hidden(text())  # chosen of `moves`; "": as of `whole_stance`
+    moves: chosen(
+        choice(
+            "Moves",
+            Moves,
+            "What goes with a contact that is moved: nothing; its foot, heel and toe of one step; "
+            "or its whole stance. Automatic: the foot where feet come down again within the "
+            "stance, as in a walk, else the whole stance",
+            get=stances.get_moves,
+            set=stances.set_moves,
         )
     )
 

@@ -1,4 +1,5 @@
-"""Moving contacts' places, one by one or a whole stance at once, and what a stance's move is.
+"""Moving contacts' places, one by one, a foot or a whole stance at once, and what a stance's move
+is.
 
 Lengths in Blender units, angles in rad, world.
 A place has one truth, `row.at`; empties and the stances' offsets are kept to it. Of an empty that
@@ -16,8 +17,10 @@ from math import atan2, tau
 import bpy
 from mathutils import Matrix, Vector
 
+from ...solver.data.contacts import Touch, footfalls, takes_steps
 from ..accessors import attached
 from ..movable import may_move
+from ..rows.choices import Moves
 from ..rows.protocols import ContactRow, Settings, StanceRow
 
 _SAME = 1e-6  # Blender units
@@ -28,9 +31,9 @@ _RIGID = 1e-3  # m; contacts that are so far from their stance's move were moved
 def place(
     settings: Settings, row: ContactRow, to: Sequence[float], *, whole: bool | None = None
 ) -> None:
-    """Puts a contact somewhere; its whole stance makes the same move where `whole` says so.
+    """Puts a contact somewhere; what goes with it makes the same move.
 
-    whole: None is as the settings have it (`whole_stance`).
+    whole: its whole stance goes, or it alone; None is as the settings have it (`moves`).
     """
     shift = Vector(to) - Vector(row.at)
     for contact in moving_with(settings, row, whole=whole):
@@ -42,8 +45,42 @@ def moving_with(
     settings: Settings, row: ContactRow, *, whole: bool | None = None
 ) -> list[ContactRow]:
     """The contacts that go where a contact goes. whole: as of `place`."""
-    whole = settings.whole_stance if whole is None else whole
-    return stance_contacts(settings, row.phase) if whole else [row]
+    moves = Moves[settings.moves]
+    if whole is not None:
+        moves = Moves.STANCE if whole else Moves.CONTACT
+    stance = stance_contacts(settings, row.phase)
+    if moves is Moves.AUTO:
+        walks = takes_steps([_touch(each) for each in stance if each.used])
+        moves = Moves.FOOT if walks else Moves.STANCE
+    match moves:
+        case Moves.CONTACT:
+            return [row]
+        case Moves.FOOT:
+            steps = footfalls([_touch(each) for each in stance])
+            return next(foot for foot in ([stance[i] for i in s] for s in steps) if row in foot)
+    return stance
+
+
+def _touch(row: ContactRow) -> Touch:
+    return Touch(row.point, row.start_frame, row.end_frame)
+
+
+def get_moves(settings: Settings) -> int:
+    """Place of `moves` among the choices. Files of earlier versions have `whole_stance` alone."""
+    usual = Moves.AUTO if settings.whole_stance else Moves.CONTACT
+    return list(Moves).index(Moves[settings.moving] if settings.moving else usual)
+
+
+def set_moves(settings: Settings, index: int) -> None:
+    """Chooses what goes with a contact."""
+    chosen = list(Moves)[index]
+    settings.whole_stance = chosen in (Moves.AUTO, Moves.STANCE)
+    settings.moving = chosen.name
+
+
+def take_whole_stance(settings: Settings, _context: bpy.types.Context) -> None:
+    """What scripts of earlier versions say is as they meant it."""
+    settings.moving = (Moves.STANCE if settings.whole_stance else Moves.CONTACT).name
 
 
 def stand_on(
@@ -177,8 +214,8 @@ def follow(empty: bpy.types.Object) -> None:
 
 
 def follow_moving(settings: Settings, places: Mapping[str, Sequence[float]]) -> None:
-    """Takes over where empties that move are as their contacts' stances begin. What else is in the
-    stance goes along with the first of them where the settings say so.
+    """Takes over where empties that move are as their contacts' stances begin. What goes with
+    several of them goes along with the first.
 
     places: by the contact's name.
     """
@@ -190,11 +227,10 @@ def follow_moving(settings: Settings, places: Mapping[str, Sequence[float]]) -> 
         if (to - was).length <= _SAME:
             to = was
         row.at = to
-        if row.phase not in led:
-            led.add(row.phase)
-            for contact in moving_with(settings, row):
-                if contact.name not in places:
-                    _put(contact, Vector(contact.at) + to - was)
+        for contact in moving_with(settings, row):
+            if contact.name not in {*places, *led}:
+                led.add(contact.name)
+                _put(contact, Vector(contact.at) + to - was)
         _remember(settings, row.phase)
 
 

@@ -40,6 +40,15 @@ class SurfaceRole(Enum):
         return SceneRole.GROUND if self is SurfaceRole.GROUND else SceneRole.OBSTACLE
 
 
+class Moves(Enum):
+    """What goes where a contact is moved to."""
+
+    AUTO = "Automatic"  # the foot where one comes down again within the stance, else the stance
+    CONTACT = "Contact Alone"
+    FOOT = "Foot"
+    STANCE = "Whole Stance"
+
+
 class Span(Enum):
     """During what a constraint holds."""
 

@@ -65,6 +65,8 @@ class Settings(Protocol):
     use_range: bool
     first_frame: int
     last_frame: int
+    moves: str
+    moving: str
     whole_stance: bool
     active_contact: int
     unseen: str

@@ -50,7 +50,7 @@ _OF_RECORDING = ("repairs", "findings", "examined", "examination_stale", "feet")
 _NOT_ASKED = (  # of the next result
     *("marks", "adapted", "source", "status", "met", "measured_height", "fit_quality"),
     *("shapes_told", "unseen", "analysed_motion", "analysed_span", "analysed_contacts"),
-    *("whole_stance", "active_contact", "active_constraint", "active_surface"),
+    *("whole_stance", "moving", "active_contact", "active_constraint", "active_surface"),
     "active_body_change",
     *("keep_polish", *_OF_RECORDING),
 )

@@ -34,8 +34,8 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
     bl_idname = OperatorId.DRAG_PIN
     bl_label = "Drag Pin"
     bl_description = (
-        "Move a contact (with its stance, where Move Whole Stance is on) or a point while the "
-        "motion follows as a ghost; letting go adapts. A click chooses it in its list"
+        "Move a contact (with its foot or its stance, as Moves says) or a point while the motion "
+        "follows as a ghost; letting go adapts. A click chooses it in its list"
     )
     bl_options = {"REGISTER", "UNDO", "BLOCKING", "GRAB_CURSOR"}
     key_hints = "X Y Z: axis · Shift: finer · Ctrl: steps, off surfaces · Esc: back"
@@ -54,7 +54,8 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
     )
     whole: bpy.props.BoolProperty(
         name="Whole Stance",
-        description="Move every contact of the phase, whatever Move Whole Stance says",
+        description="Move every contact of the phase, or if off this one alone; as Moves says "
+        "where it is not given",
         options={"SKIP_SAVE"},
     )
     axis: bpy.props.EnumProperty(
@@ -186,10 +187,15 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         if isinstance(row, HangtimeConstraint):
             row.use_place, row.place = True, to
             return
-        place(settings, row, to.to_tuple(), whole=self.whole or None)
+        place(settings, row, to.to_tuple(), whole=self._whole)
         members = ground_members(settings, current_scene())
         on = next((each.object for each in members if each.name == ground), None)
-        stand_on(settings, row, on, whole=self.whole or None)
+        stand_on(settings, row, on, whole=self._whole)
+
+    @property
+    def _whole(self) -> bool | None:
+        """As of `place`; None where nobody said."""
+        return self.whole if self.properties.is_property_set("whole") else None
 
     def _remembered(self) -> tuple[int, int, dict[int, Standing], tuple[bool, Vector]]:
         """State to restore: what is chosen, contacts' places, the point's."""

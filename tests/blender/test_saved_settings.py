@@ -47,6 +47,12 @@ def heads(armature: bpy.types.Object, frame: int) -> list[tuple[float, ...]]:
     return [tuple(armature.matrix_world @ bone.head) for bone in armature.pose.bones]
 
 
+def test_a_contact_still_moves_alone_where_that_was_wished(performer: bpy.types.Object) -> None:
+    """By the checkbox in whose place a choice is now."""
+    assert performer.hangtime.moves == "CONTACT"
+    assert bpy.data.objects["Ball"].hangtime.moves == "AUTO"
+
+
 @pytest.mark.usefixtures("performer")
 def test_every_setting_is_read_as_it_was_saved() -> None:
     saved = json.loads((DATA / "saved_settings.json").read_text(encoding="utf-8"))

@@ -28,7 +28,7 @@ class ContactsPanel(ArmaturePanel):
             layout.label(text=NONE_FOUND if settings.analysed else NOT_SOUGHT, icon="INFO")
             return
         draw_list(layout, StanceList, settings, "stances", rows=3)
-        layout.prop(settings, "whole_stance")
+        layout.prop(settings, "moves")
 
 
 class StancePanel(ArmaturePanel):

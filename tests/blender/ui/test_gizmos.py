@@ -210,7 +210,7 @@ def standing() -> bpy.types.Object:
     for index, at in enumerate(((5.0, 5.0, 0.0), *STANCE)):
         row = settings.contacts.add()
         row.name, row.phase = f"Heel {index}", f"ground {1 + (index > 0)}"
-        row.at = row.found_at = at
+        row.point, row.at, row.found_at = row.name, at, at
     for name in ("ground 1", "ground 2"):
         stance = settings.stances.add()
         stance.name, stance.forward_axis = name, (0.0, -1.0, 0.0)
@@ -241,16 +241,17 @@ def test_contacts_that_count_and_placed_points_are_held(standing: bpy.types.Obje
 
 def test_a_contact_is_dragged_with_its_stance_or_alone(standing: bpy.types.Object) -> None:
     was, shift = places_of(standing), Vector((0.1, 0.2, 0.3))
-    for alone, whole, moving in (
-        (False, False, {1, 2, 3}),
-        (True, False, {2}),
-        (True, True, {1, 2, 3}),
+    for alone, said, moving in (
+        (False, {}, {1, 2, 3}),
+        (True, {}, {2}),
+        (True, {"whole": True}, {1, 2, 3}),
+        (False, {"whole": False}, {2}),
     ):
         standing.hangtime.whole_stance = not alone
-        bpy.ops.hangtime.drag_pin(contact=2, whole=whole, shift=shift)
+        bpy.ops.hangtime.drag_pin(contact=2, shift=shift, **said)
         now = places_of(standing)
         assert {i for i in range(4) if (now[i] - was[i]).length > 0.1} == moving
-        bpy.ops.hangtime.drag_pin(contact=2, whole=whole, shift=-shift)
+        bpy.ops.hangtime.drag_pin(contact=2, shift=-shift, **said)
 
 
 def test_a_point_that_is_dragged_gets_a_place_of_its_own(standing: bpy.types.Object) -> None:

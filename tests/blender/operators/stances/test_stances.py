@@ -55,6 +55,39 @@ def test_a_contact_moves_alone_where_that_is_wished(analysed: bpy.types.Object) 
     assert all(tuple(row.place) == tuple(row.found_at) for row in others)
 
 
+def test_in_a_walk_a_contact_takes_its_foot_along_and_the_stance_where_that_is_wished(
+    analysed: bpy.types.Object,
+) -> None:
+    settings = analysed.hangtime
+    heel, toe = (settings.contacts[f"Left {point} 2"] for point in ("heel", "toe"))
+
+    def going() -> set[str]:
+        for row in settings.contacts:
+            row.at = row.found_at
+        heel.place = np.add(heel.found_at, (0.0, 0.0, 0.1))
+        return {row.name for row in settings.contacts if row.at[2] > row.found_at[2] + 0.05}
+
+    assert settings.moves == "AUTO"
+    stance = {row.name for row in landing(settings)}
+    assert going() == stance > {heel.name, toe.name}
+    for row in settings.contacts:  # as if nothing had flown
+        row.phase = heel.phase
+    for moves, names in (
+        ("AUTO", {heel.name, toe.name}),
+        ("FOOT", {heel.name, toe.name}),
+        ("STANCE", set(settings.contacts.keys())),
+        ("CONTACT", {heel.name}),
+    ):
+        settings.moves = moves
+        assert (settings.moves, going()) == (moves, names)
+
+
+def test_scripts_of_earlier_versions_move_what_they_did(analysed: bpy.types.Object) -> None:
+    for whole, moves in ((False, "CONTACT"), (True, "STANCE")):
+        analysed.hangtime.whole_stance = whole
+        assert analysed.hangtime.moves == moves
+
+
 def test_a_stance_turns_about_its_middle(analysed: bpy.types.Object) -> None:
     settings = analysed.hangtime
     stance, rows = settings.stances["ground 2"], landing(settings)
