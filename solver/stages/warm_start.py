@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import FloatArray
-from ..data.contacts import ContactSchedule, Interval, gaps
+from ..data.contacts import ContactSchedule, Interval, footfalls, gaps
 from ..numerics.rotations import axis_rotation, planar_turn
 from ..numerics.splines import dense_instants, greville_abscissae
 from ..transcription.motion import Motion
@@ -24,7 +24,9 @@ MAX_SHIFT_PER_STEP = 0.5  # m, of a continuation step
 MAX_SPEED_PER_STEP = 1.5  # m/s, by which a landing or a stance changes speed
 MAX_TURN_PER_STEP = np.radians(45.0)
 LOWEST_SAMPLES = 50  # of a contact's height on moving ground
-TOGETHER = 0.05  # s, within which both feet leave
+TOGETHER = 0.05  # s, within which both feet leave, or come down
+UNEQUAL = 0.02  # m, by which a rigid move of all that stands may miss; toes bend, ground is uneven
+UNEQUAL_TURN = np.radians(1.0)  # of a foot to that move's, likewise; on, a way goes off by as much
 RIDE_RATE = 60.0  # Hz, at which the move of a stance on moving ground is sampled
 
 
@@ -187,13 +189,39 @@ def end_move(
 ) -> RigidMove:
     """The move of what stands where the last of `stance_moves` ends: a foot that stepped on within
     the stance may have been moved otherwise. A single point tells no turn, so the stance's counts.
+
+    Where feet that stand there were moved unequally no rigid move has all of them stay. It is that
+    of the foot which came down last, for it stands on for the longest, and of feet that came down
+    together of the one that was moved least; turned as far as the foot that was turned least.
     """
     inside = [i for i, c in enumerate(schedule.contacts) if c.end > last.start and not c.asked_for]
     latest = max(schedule.contacts[i].end for i in inside)
     mine = [i for i in inside if schedule.contacts[i].end > latest - TOGETHER]
     end, turn = last.times[-1:], float(last.turns[-1])
-    move = _least_squares(last.start, last.end, end, mine, (before, after), turn)
-    return move if len(mine) > 1 else replace(move, turns=np.array([turn]))
+
+    def moved(contacts: Sequence[int]) -> RigidMove:
+        return _least_squares(last.start, last.end, end, contacts, (before, after), turn)
+
+    move = moved(mine)
+    if len(mine) == 1:
+        return replace(move, turns=np.array([turn]))
+    steps = footfalls([schedule.contacts[i].touch for i in inside])
+    every = [[inside[k] for k in step] for step in steps]
+    feet = [foot for foot in every if set(foot) & set(mine)]
+    turns = [float(moved(foot).turns[0]) for foot in feet if len(foot) > 1]
+    old, new = (np.concatenate([each.at(i, end) for i in mine]) for each in (before, after))
+    off = np.linalg.norm(move.of(old, np.repeat(end, len(mine))) - new, axis=1).max()
+    if off < UNEQUAL and all(abs(each - move.turns[0]) < UNEQUAL_TURN for each in turns):
+        return move
+    lasting = [moved([i for i in foot if i in mine]) for foot in _last_down(schedule, feet)]
+    staying = min(lasting, key=lambda each: float(np.linalg.norm(each.shifts[0])))
+    return replace(staying, turns=np.array([min(turns, key=abs, default=turn)]))
+
+
+def _last_down(schedule: ContactSchedule, feet: Sequence[list[int]]) -> list[list[int]]:
+    """Of feet, each with its contacts, those that came down last, together."""
+    landed = [min(schedule.contacts[i].start for i in foot) for foot in feet]
+    return [f for f, at in zip(feet, landed, strict=True) if at > max(landed) - TOGETHER]
 
 
 def _least_squares(
