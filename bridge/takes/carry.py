@@ -11,6 +11,7 @@ from ...solver.data.recording import PoseTrack
 from ...solver.data.stance_move import StanceMove
 from ...solver.numerics.rotations import axis_rotation
 
+_STANDS = 0.2  # m/s, of a foot in the take; noise moves those that stand by as much
 _STANDING = 0.02  # of the mean speed, which the way back also has while something stands
 
 
@@ -42,6 +43,24 @@ def slid(places: FloatArray, move: StanceMove, shares: FloatArray) -> float:
     )
     steps = np.linalg.norm((now - before)[:, :2], axis=1)
     return float(np.maximum(steps - travels.min(axis=1), 0.0).sum())
+
+
+def carried_points(points: FloatArray, move: StanceMove | None) -> FloatArray:
+    """Points (..., 3) m with a stance's move; as they are without one."""
+    if move is None:
+        return points
+    turned = (points - move.pivot) @ axis_rotation(2, move.turn).T
+    return np.asarray(turned + move.pivot + move.shift)
+
+
+def slid_in_blend(take: FloatArray, shown: FloatArray, seconds: float) -> FloatArray:
+    """(B,) m, how far bodies go along the floor beside the take while they stand in that.
+
+    take, shown: (T, B, 3) m at the blend's frames, which are so many seconds apart.
+    """
+    stand = np.linalg.norm(np.diff(take, axis=0), axis=2) < _STANDS * seconds
+    beside = np.linalg.norm(np.diff((shown - take)[..., :2], axis=0), axis=2)
+    return np.asarray(np.where(stand, beside, 0.0).sum(axis=0))
 
 
 def shares_of_return(

@@ -28,7 +28,7 @@ class AdaptedMotion:
 
     times: the report's map. moved: the last stance's move. ends: whether nothing shall follow.
     kept: first and last frame of each adaptation that the take holds already, which no blend shall
-    reach into.
+    reach into. touching: bones that touch in it.
     """
 
     track: PoseTrack
@@ -37,6 +37,7 @@ class AdaptedMotion:
     options: ResultOptions
     ends: bool = False
     kept: tuple[tuple[float, float], ...] = ()
+    touching: tuple[str, ...] = ()
 
     @property
     def recorded_frames(self) -> FloatArray:

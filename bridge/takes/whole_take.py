@@ -34,7 +34,7 @@ from ..controls.control_rig import (
 from ..controls.driven import is_driven
 from ..controls.kept import kept_by
 from ..controls.targets import targets_of
-from .carry import carried, shares_of_return, slid
+from .carry import carried, carried_points, shares_of_return, slid, slid_in_blend
 from .key_splice import FullTurns, anchor, applied, retime, splice
 from .offsets import (
     backwards,
@@ -168,6 +168,7 @@ def write_take(
     if rig is not None:
         shown = yield from sample_incrementally(armature, plan.body_frames, showing)
         kept = kept_by(shown, targets_of(armature, was[0], body), len(rig.used))
+    blends = yield from _with_slides(copy, was[0], blends, motion.touching)
     bones_held = tuple(dict.fromkeys(channel.bone for channel in held))
     about = plan.span, plan.moved, plan.back, plan.time
     return WrittenTake(*about, done, bones_held, kept, rig, slide, blends, company)
@@ -359,6 +360,28 @@ def _shares(
     whole = np.concatenate(places) * metres_per_unit(current_scene())
     shares = shares_of_return(frames, whole, plan.span.last, plan.back)
     return shares, slid(whole, plan.moved, shares)
+
+
+def _with_slides(
+    copy: _Copy, was: Poses, blends: tuple[BlendReport, ...], feet: tuple[str, ...]
+) -> Incremental[tuple[BlendReport, ...]]:
+    """The blends with how far they take feet along that stand in the take, as it is shown now. was:
+    the take's poses at the body's frames. On a way back that is told of the whole way."""
+    told, every, plan = [], copy.plan.body_frames, copy.plan
+    rate, metres = frames_per_second(current_scene()), metres_per_unit(current_scene())
+    for blend in blends:
+        inside = (every >= blend.first_frame) & (every <= blend.last_frame)
+        if not feet or (plan.back is not None and not blend.into):
+            told.append(blend)
+            continue
+        poses = yield from sample_incrementally(copy.armature, every[inside], copy.showing)
+        take = metres * _places(was, feet)[inside]
+        if not blend.into:
+            take = carried_points(take, plan.moved)
+        slides = slid_in_blend(take, metres * _places(poses, feet), 1.0 / rate)
+        worst = int(slides.argmax())
+        told.append(replace(blend, slide_m=float(slides[worst]), slide_bone=feet[worst]))
+    return tuple(told)
 
 
 def _places(poses: Poses, bodies: tuple[str, ...]) -> FloatArray:

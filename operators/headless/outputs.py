@@ -333,6 +333,7 @@ class Outputs:
             self.options,
             ends=any(hold.ends for hold in self.clip.problem.requests.holds),
             kept=adapted_spans(present(current_action(self.clip.armature))),
+            touching=self.result.schedule.bones,
         )
 
     def _choose_keys(

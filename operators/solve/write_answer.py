@@ -153,6 +153,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         options,
         ends=any(hold.ends for hold in asked.problem.requests.holds),
         kept=adapted_spans(present(recorded_action(armature))),
+        touching=answer.schedule.bones,
     )
     action, written = yield from write_adapted_incrementally(armature, motion)
     keep(action, answer.traces, stood)

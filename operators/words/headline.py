@@ -24,11 +24,16 @@ AS_RECORDED = {
 }
 FAR_OFF = 0.05  # m, beside the take; a blend of less is hardly seen
 SLIDES = 0.01  # m, of feet on the way back, that shows
+BLEND_SLIDES = 0.03  # m; by less those go that stand a little off the recording in the fit
 LURCH = 0.5  # m/s, by which a blend's hips are faster than the take's; of less, likewise
 LEAST_TURNED = 1.0  # degrees, of a loop's way; a recorded one weaves by about as much
 LEAST_RETIMED = 0.0005  # s
 FITS = (CertificateItem.FIT_RMS, CertificateItem.FIT_WORST_FRAME)
 
+_BESIDE_A_STAND = {  # by whether the blend leads in
+    True: "Begin the range before it comes down",
+    False: "End the range when it has left",
+}
 # What may be done about keys that do not show what was solved.
 SAME_SCALE = (
     "Lengths change with the scale of {}: make it one number, for all axes and at all frames"
@@ -228,7 +233,8 @@ def missed_body_lines(missed: Sequence[BodyMiss]) -> list[str]:
 
 
 def blend_lines(blends: Sequence[BlendReport]) -> list[str]:
-    """The blends that have the hips far to go, with what may be done: lines."""
+    """The blends that have the hips far to go, or have feet slide that stand, with what may be
+    done: lines."""
     return [
         f"The hips are {length(each.off_m)} beside the take at frame {_seam(each):g}: "
         f"the blend {'in' if each.into else 'out'} (frames {each.first_frame:g} to "
@@ -238,6 +244,13 @@ def blend_lines(blends: Sequence[BlendReport]) -> list[str]:
         "frames"
         for each in blends
         if each.off_m > FAR_OFF and each.speed_m_s > each.take_speed_m_s + LURCH
+    ] + [
+        f"{each.slide_bone} slides by {1000.0 * each.slide_m:.0f} mm in the blend "
+        f"{'in' if each.into else 'out'} (frames {each.first_frame:g} to {each.last_frame:g}), "
+        "while it stands in the take. "
+        f"{_BESIDE_A_STAND[each.into]}"
+        for each in blends
+        if each.slide_m > BLEND_SLIDES
     ]
 
 

@@ -227,6 +227,11 @@ class ContactSchedule:
     numbers: tuple[int, ...] = ()
 
     @property
+    def bones(self) -> tuple[str, ...]:
+        """The bones that touch."""
+        return tuple(dict.fromkeys(contact.bone for contact in self.contacts))
+
+    @property
     def flights(self) -> tuple[Interval, ...]:
         """Flight intervals: what neither a contact nor unseen support covers, in order."""
         carried = [(c.start, c.end) for c in self.contacts]

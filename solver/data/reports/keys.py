@@ -57,7 +57,8 @@ class BlendReport:
 
     into: whether it leads into the adapted frames; else out of them. first_frame, last_frame: its
     own, the seam included. off_m: of the hips from the take (carried along) at the seam. speed_m_s:
-    the hips' highest in it, at `frame`; take_speed_m_s: the take's highest there.
+    the hips' highest in it, at `frame`; take_speed_m_s: the take's highest there. slide_m: how far
+    it takes the foot along that slides the most while it stands in the take, and its bone.
     """
 
     into: bool
@@ -67,3 +68,5 @@ class BlendReport:
     speed_m_s: float
     frame: float
     take_speed_m_s: float
+    slide_m: float = 0.0
+    slide_bone: str = ""

@@ -147,6 +147,31 @@ def test_how_blends_move_the_hips_is_told() -> None:
         assert each.first_frame < each.frame < each.last_frame
 
 
+@pytest.mark.parametrize(
+    ("moved", "out"),
+    [(None, 0.1), (StanceMove("ground 2", (0.0, 0.0, 0.0), 0.0, (0.0, 0.1, 0.0)), 0.0)],
+)
+def test_feet_that_stand_in_the_take_and_slide_in_a_blend_are_told(
+    moved: StanceMove | None, out: float
+) -> None:
+    """Of a figure that stands still, and 0.1 m aside in the adapted frames."""
+    armature = rigs.make_armature()
+    for frame in (1, LENGTH):
+        for bone in rigs.MOVING:
+            armature.pose.bones[bone].keyframe_insert("rotation_quaternion", frame=frame)
+        armature.pose.bones["hips"].keyframe_insert("location", frame=frame)
+    part = read_recording(armature).window(FIRST, LAST)
+    bones = [part.index(bone) for bone in rigs.MOVING]
+    aside = part.heads[:, 0] + [0.0, 0.1, 0.0]
+    track = PoseTrack(part.frames, rigs.MOVING, part.rotations[:, bones], aside)
+    times = TimeMap((FIRST, LAST), (FIRST, LAST))
+    asked = AdaptedMotion(track, times, moved, OPTIONS, touching=("foot",))
+    _, written = write_result(armature, asked, name="Result")
+    assert written is not None
+    assert [each.slide_bone for each in written.blends] == ["foot", "foot"]
+    assert [each.slide_m for each in written.blends] == pytest.approx([0.1, out], abs=1e-4)
+
+
 def as_made(_armature: bpy.types.Object) -> None:
     """Nothing but its curves moves the rig."""
 

@@ -93,6 +93,23 @@ def test_a_blend_that_has_far_to_go_is_told_with_its_speed_and_a_remedy() -> Non
     assert "End the range later" in lines
 
 
+def test_feet_that_slide_in_a_blend_are_told_with_the_remedy() -> None:
+    problem = MotionProblem()
+    made = report(adapt(fitted_hop(), problem), problem, Origin("hop"))
+    into = BlendReport(True, 31.0, 60.0, 0.02, 0.6, 45.0, 0.6, 0.043, "RightAnkle")
+    out = replace(into, into=False, first_frame=330.0, last_frame=359.0)
+    usual = headline(made)
+    lines = headline(replace(made, blends=(into, out)))
+    assert [line.strip() for line in lines if line not in usual] == [
+        "RightAnkle slides by 43 mm in the blend in (frames 31 to 60), while it stands in the "
+        "take. Begin the range before it comes down",
+        "RightAnkle slides by 43 mm in the blend out (frames 330 to 359), while it stands in the "
+        "take. End the range when it has left",
+    ]
+    little = replace(into, slide_m=0.02)
+    assert headline(replace(made, blends=(little,))) == headline(made)
+
+
 @pytest.mark.parametrize("durations", Durations)
 def test_durations_that_were_sought_in_vain_are_told(durations: Durations) -> None:
     problem = MotionProblem()
