@@ -146,8 +146,8 @@ class HangtimeSettings(bpy.types.PropertyGroup):
             "Moves",
             Moves,
             "What goes with a contact that is moved: nothing; its foot, heel and toe of one step; "
-            "or its whole stance. Automatic: the foot where feet come down again within the "
-            "stance, as in a walk, else the whole stance",
+            "or its whole stance. Automatic: the foot of a step, as in a walk; of a landing or "
+            "a take-off the whole stance",
             get=stances.get_moves,
             set=stances.set_moves,
         )

@@ -17,10 +17,11 @@ from math import atan2, tau
 import bpy
 from mathutils import Matrix, Vector
 
-from ...solver.data.contacts import Touch, footfalls, takes_steps
+from ...solver.data.contacts import Touch, footfalls, stood_on_first, takes_steps
 from ..accessors import attached
 from ..movable import may_move
 from ..rows.choices import Moves
+from ..rows.phases import SAME, clip_ends
 from ..rows.protocols import ContactRow, Settings, StanceRow
 
 _SAME = 1e-6  # Blender units
@@ -50,8 +51,7 @@ def moving_with(
         moves = Moves.STANCE if whole else Moves.CONTACT
     stance = stance_contacts(settings, row.phase)
     if moves is Moves.AUTO:
-        walks = takes_steps([_touch(each) for each in stance if each.used])
-        moves = Moves.FOOT if walks else Moves.STANCE
+        moves = Moves.FOOT if _steps(settings, stance, row) else Moves.STANCE
     match moves:
         case Moves.CONTACT:
             return [row]
@@ -59,6 +59,22 @@ def moving_with(
             steps = footfalls([_touch(each) for each in stance])
             return next(foot for foot in ([stance[i] for i in s] for s in steps) if row in foot)
     return stance
+
+
+def _steps(settings: Settings, stance: Sequence[ContactRow], row: ContactRow) -> bool:
+    """Whether a contact is of a step: feet come down again within its stance, and it is not what
+    the body lands on from a flight, or leaves from into one."""
+    counted = [each for each in stance if each.used or each == row]
+    touches = [_touch(each) for each in counted]
+    ends = clip_ends(settings)
+    if ends is None or not takes_steps(touches):
+        return False
+    borders: set[int] = set()
+    if min(touch.start for touch in touches) > ends[0] + SAME:
+        borders |= stood_on_first(touches)
+    if max(touch.end for touch in touches) < ends[1] - SAME:
+        borders |= stood_on_first([Touch(t.point, -t.end, -t.start) for t in touches])
+    return counted.index(row) not in borders
 
 
 def _touch(row: ContactRow) -> Touch:

@@ -43,7 +43,7 @@ class SurfaceRole(Enum):
 class Moves(Enum):
     """What goes where a contact is moved to."""
 
-    AUTO = "Automatic"  # the foot where one comes down again within the stance, else the stance
+    AUTO = "Automatic"  # of steps the foot, of landings and take-offs the stance
     CONTACT = "Contact Alone"
     FOOT = "Foot"
     STANCE = "Whole Stance"

@@ -172,6 +172,23 @@ def takes_steps(touches: Sequence[Touch]) -> bool:
     return len(set(limbs)) < len(limbs)
 
 
+def stood_on_first(touches: Sequence[Touch]) -> frozenset[int]:
+    """Indices of touches: those of the foot that comes down first, and of the other one where both
+    stand together for most of a step, as after a jump, not in a walk's change of feet."""
+    steps = [(_while(touches, mine), mine) for mine in footfalls(touches)]
+    (first, last), _ = min(steps, key=lambda step: step[0])
+
+    def together(start: float, end: float) -> bool:
+        shared = min(end, last) - max(start, first)
+        return 2.0 * shared > min(end - start, last - first)
+
+    return frozenset(i for when, mine in steps if together(*when) for i in mine)
+
+
+def _while(touches: Sequence[Touch], step: Sequence[int]) -> tuple[float, float]:
+    return min(touches[i].start for i in step), max(touches[i].end for i in step)
+
+
 @dataclass(frozen=True)
 class Interval:
     """A time interval [start, end], s."""

@@ -10,6 +10,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.constraints.leaps import leaps_of
 from hangtime.bridge.constraints.motion_problem import problem_of
+from hangtime.bridge.properties.stances import moving_with
 from hangtime.operators.headless.doubts import doubts_about
 from hangtime.operators.solve.adapt import window_doubts
 from hangtime.solver.analysis.analyse import analyse
@@ -80,6 +81,24 @@ def test_in_a_walk_a_contact_takes_its_foot_along_and_the_stance_where_that_is_w
     ):
         settings.moves = moves
         assert (settings.moves, going()) == (moves, names)
+
+
+def test_a_landing_goes_as_a_whole_also_where_the_jumper_walks_on(
+    analysed: bpy.types.Object,
+) -> None:
+    settings = analysed.hangtime
+    heel, step = settings.contacts["Left heel 2"], settings.contacts["Right heel 1"]
+    middle = 0.5 * (heel.start_frame + heel.end_frame)
+    for point in ("heel", "toe"):  # the right foot comes down again
+        stood, again = (settings.contacts[f"Right {point} {count}"] for count in (2, 1))
+        again.phase, again.start_frame, again.end_frame = heel.phase, middle + 9.0, stood.end_frame
+        stood.end_frame = middle
+
+    def going(row) -> set[str]:
+        return {each.name for each in moving_with(settings, row)}
+
+    assert going(heel) == {row.name for row in landing(settings)} > {"Right heel 1"}
+    assert going(step) == {"Right heel 1", "Right toe 1"}
 
 
 def test_scripts_of_earlier_versions_move_what_they_did(analysed: bpy.types.Object) -> None:
