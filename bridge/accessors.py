@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 import bpy
 
 from .action_slots import result_in, span_of
+from .marked_strips import Strips, is_seen, marked_strips, marks_of
 from .played_strips import played_strip, time_of
 
 SHOWS = "hangtime_shows"  # of the action that holds a result's difference: the result, and
@@ -18,7 +19,6 @@ BESIDE = "hangtime_beside"  # what it is the difference from
 ATTRIBUTE = "hangtime"  # under which scenes, objects, actions and bones carry what is stored
 HOLDS = "hangtime_holds"  # of actions that hold settings: Blender 5.0.1 clears pointers to what is
 # deleted only in actions that have a custom property
-IN_STRIP = "hangtime_in_strip"  # of actions that Hangtime laid into strips; needs no registration
 
 T = TypeVar("T")
 
@@ -50,13 +50,17 @@ def source_of(action: bpy.types.Action) -> bpy.types.Action | None:
     return recording
 
 
+def root_of(action: bpy.types.Action) -> bpy.types.Action:
+    """The recording that a take goes back to."""
+    while (source := source_of(action)) is not None:
+        action = source
+    return action
+
+
 def called(action: bpy.types.Action) -> str:
     """A take's name as its list has it: without the recording's, with which results' names begin,
     so that there is room for what tells them apart."""
-    root = action
-    while (source := source_of(root)) is not None:
-        root = source
-    return action.name.removeprefix(f"{root.name} ")
+    return action.name.removeprefix(f"{root_of(action).name} ")
 
 
 def armature_data(armature: bpy.types.Object) -> bpy.types.Armature:
@@ -71,16 +75,36 @@ def pose_of(armature: bpy.types.Object) -> bpy.types.Pose:
 
 
 def current_action(armature: bpy.types.Object) -> bpy.types.Action | None:
-    """The take that animates the armature now: assigned, in a strip that Hangtime made, or in the
-    only one of the artist's."""
+    """The take that animates the armature now: assigned, in a strip of its takes, or in the only
+    one that there is."""
     assigned = assigned_action(armature)
     if assigned is not None or armature.animation_data is None:
         return assigned
-    seen = [strip for track, strip in take_strips(armature) if not (track.mute or strip.mute)]
+    seen = [each for each in take_strips(armature) if is_seen(*each)]
     if seen:
-        return shown_by(seen[-1])
+        return None if _is_covered(armature, *seen[-1]) else shown_by(seen[-1][1])
     strip = played_strip(armature)
     return strip.action if strip is not None else None
+
+
+def _is_covered(
+    armature: bpy.types.Object, track: bpy.types.NlaTrack, strip: bpy.types.NlaStrip
+) -> bool:
+    """Whether a strip of the artist's plays the same take, or another result of its recording,
+    above a strip and in its place."""
+    take = shown_by(strip)
+    every = list(present(armature.animation_data).nla_tracks)
+    ours = [each for _, each in take_strips(armature)]
+    above = ((t, s) for t in every[every.index(track) + 1 :] for s in t.strips if s not in ours)
+    return take is not None and any(
+        is_seen(*each)
+        and each[1].blend_type == "REPLACE"
+        and each[1].action is not None
+        and root_of(each[1].action) == root_of(take)
+        and each[1].frame_start < strip.frame_end
+        and strip.frame_start < each[1].frame_end
+        for each in above
+    )
 
 
 def assigned_action(owner: bpy.types.Object) -> bpy.types.Action | None:
@@ -123,16 +147,20 @@ def shown_by(strip: bpy.types.NlaStrip) -> bpy.types.Action | None:
     return action if action is None else action.get(SHOWS) or action
 
 
-def take_strips(
-    armature: bpy.types.Object,
-) -> list[tuple[bpy.types.NlaTrack, bpy.types.NlaStrip]]:
-    """The strips that Hangtime made for an armature, with their tracks. The take's comes first,
-    which may be the artist's own (see `adopt_strip`)."""
-    data = armature.animation_data
+def take_strips(armature: bpy.types.Object) -> Strips:
+    """The strips of an armature's takes, with their tracks, from the lowest on: those that Hangtime
+    made, and those of the artist's that it may hide (see `adopt_strip`)."""
+    data, settings = armature.animation_data, getattr(armature, ATTRIBUTE, None)
     if data is None:
         return []
-    strips = ((track, strip) for track in data.nla_tracks for strip in track.strips)
-    return [each for each in strips if each[1].action and each[1].action.get(IN_STRIP)]
+    return marked_strips(data, settings.take_strips if settings is not None else "")
+
+
+def mark_strips(armature: bpy.types.Object, *more: bpy.types.NlaStrip) -> None:
+    """Note the strips of an armature's takes by what they are called now. more: those that count
+    among them from now on."""
+    known = [strip for _, strip in take_strips(armature) if strip not in more]
+    attached(armature).take_strips = marks_of([*known, *more])
 
 
 def current_scene() -> bpy.types.Scene:

@@ -15,7 +15,7 @@ from ..properties.settings import settings_of
 from ..unkeyed import note_unkeyed
 from . import fcurves
 from .incremental import Incremental, complete, sample_incrementally
-from .played import playing_strip
+from .played import adopt_strip, playing_strip
 from .poses import Poses, sample
 from .read import recording_of, whole_frames
 from .strips import show_strip, strips_of, without_strips
@@ -77,11 +77,13 @@ def show(
 ) -> None:
     """Let the armature perform an action, in its strip where it has one, Hangtime's or the
     artist's; the pose follows."""
-    slot = slot or fcurves.slot_identifier(armature)
+    slot, shown = slot or fcurves.slot_identifier(armature), current_action(armature)
     if action is not None and strips_of(armature, action):
+        if shown is not None:
+            adopt_strip(armature, shown)
         fcurves.assign(armature, None)
         show_strip(armature, action)
-    elif action == assigned_action(armature) or action != current_action(armature):
+    elif action == assigned_action(armature) or action != shown:
         fcurves.assign(armature, action, slot)
     _evaluate()
 

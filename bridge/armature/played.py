@@ -19,7 +19,7 @@ from ...solver.data.faults import (
     UnreadStrips,
     UnseenSupport,
 )
-from ..accessors import IN_STRIP, assigned_action, mapped_strip, pose_of, take_strips
+from ..accessors import assigned_action, mapped_strip, mark_strips, pose_of, take_strips
 from ..action_slots import all_curves, alone
 from ..fake_users import free_copy
 from ..played_strips import (
@@ -113,11 +113,11 @@ def require_unblended(owner: bpy.types.Object) -> None:
 
 
 def adopt_strip(owner: bpy.types.Object, action: bpy.types.Action) -> None:
-    """Let a strip of the artist's that plays a recording count as its take's strip: results are
-    shown above it."""
+    """Let a strip of the artist's that alone plays a take count as the take's strip: results are
+    shown above it, and it may be hidden."""
     strip = played_strip(owner)
     if strip is not None and strip.action == action:
-        action[IN_STRIP] = True
+        mark_strips(owner, strip)
 
 
 @contextmanager
@@ -130,15 +130,16 @@ def playing_strip(owner: bpy.types.Object, strip: bpy.types.NlaStrip) -> Iterato
     every = list(data.nla_tracks)
     own = next(track for track in every if strip in list(track.strips))
     above, takes = every[every.index(own) + 1 :], [track for track, _ in take_strips(owner)]
-    tracks = [(track, track.mute) for track in every if track in above or track in takes]
+    muted = [(track, track.mute) for track in every if track in above or track in takes]
+    muted += [(own, own.mute), (strip, strip.mute)]
     fcurves.assign(owner, None)
     try:
-        for track, _ in tracks:
-            track.mute = track != own
+        for each, _ in muted:
+            each.mute = each not in (own, strip)
         yield
     finally:
-        for track, mute in tracks:
-            track.mute = mute
+        for each, mute in muted:
+            each.mute = mute
         fcurves.assign(owner, assigned, slot)
 
 

@@ -11,17 +11,31 @@ from contextlib import contextmanager
 import bpy
 import numpy as np
 
-from ..accessors import BESIDE, IN_STRIP, SHOWS, current_action, present, shown_by, take_strips
+from ..accessors import (
+    BESIDE,
+    SHOWS,
+    current_action,
+    mark_strips,
+    present,
+    root_of,
+    shown_by,
+    take_strips,
+)
 from ..action_slots import all_curves, span_of
+from ..marked_strips import Strips, set_seen
 from ..unkeyed import put_back
 from . import fcurves
 
-Strips = list[tuple[bpy.types.NlaTrack, bpy.types.NlaStrip]]
-
 
 def strips_of(owner: bpy.types.Object, action: bpy.types.Action) -> Strips:
-    """The strips that Hangtime made for `owner` and that show an action, with their tracks."""
+    """The strips of the takes of `owner` that show an action, with their tracks."""
     return [(track, strip) for track, strip in take_strips(owner) if shown_by(strip) == action]
+
+
+def _relatives(owner: bpy.types.Object, action: bpy.types.Action) -> Strips:
+    """The strips of the takes of `owner` that go back to the same recording as an action."""
+    root, strips = root_of(action), take_strips(owner)
+    return [each for each in strips if (take := shown_by(each[1])) and root_of(take) == root]
 
 
 def lay_strips(
@@ -41,32 +55,33 @@ def lay_strips(
     extrapolation = owner.animation_data_create().action_extrapolation
     fcurves.assign(owner, None)
     if not strips_of(owner, take):
-        _lay(owner, take, slot).extrapolation = extrapolation
+        _lay(owner, take, take, slot).extrapolation = extrapolation
     if difference is None:
-        _lay(owner, result, slot)
+        _lay(owner, take, result, slot)
     else:
         difference[SHOWS], difference[BESIDE] = result, take
-        _lay(owner, difference, slot).blend_type = "COMBINE"
+        _lay(owner, take, difference, slot).blend_type = "COMBINE"
     show_strip(owner, result)
 
 
 def layers_above(owner: bpy.types.Object, take: bpy.types.Action) -> list[str]:
     """Names of the artist's strips above the one that plays a take that add to it when they are
     seen; none where no strip plays it."""
-    tracks, playing = [track for track, _ in take_strips(owner)], strips_of(owner, take)
+    takes, playing = [strip for _, strip in take_strips(owner)], strips_of(owner, take)
     if not playing:
         return []
     every = list(present(owner.animation_data).nla_tracks)
     above = every[every.index(playing[0][0]) + 1 :]
-    strips = (strip for track in above if track not in tracks for strip in track.strips)
+    strips = (strip for track in above for strip in track.strips if strip not in takes)
     return [strip.name for strip in strips if strip.blend_type != "REPLACE"]
 
 
-def _lay(owner: bpy.types.Object, action: bpy.types.Action, slot: str | None) -> bpy.types.NlaStrip:
-    """A new strip above the others that Hangtime made, or above all where it made none, which shows
+def _lay(
+    owner: bpy.types.Object, take: bpy.types.Action, action: bpy.types.Action, slot: str | None
+) -> bpy.types.NlaStrip:
+    """A new strip above those of a take's relatives, or above all where there are none, which shows
     each frame of an action at that frame."""
-    tracks, below = owner.animation_data_create().nla_tracks, take_strips(owner)
-    action[IN_STRIP] = True
+    tracks, below = owner.animation_data_create().nla_tracks, _relatives(owner, take)
     first, last = _shown_span(action)
     start, end = float(np.floor(first)), float(np.ceil(last))
     track = tracks.new(prev=below[-1][0] if below else None)
@@ -79,6 +94,7 @@ def _lay(owner: bpy.types.Object, action: bpy.types.Action, slot: str | None) ->
     strip.action_frame_start, strip.action_frame_end = start, end
     strip.frame_start, strip.frame_end = start, max(end, start + 1.0)
     strip.blend_type, strip.extrapolation = "REPLACE", "HOLD"
+    mark_strips(owner, strip)
     return strip
 
 
@@ -91,9 +107,9 @@ def _shown_span(action: bpy.types.Action) -> tuple[float, float]:
 
 
 def show_strip(owner: bpy.types.Object, action: bpy.types.Action) -> None:
-    """Let a strip's take be seen: of the strips that Hangtime made only the first one, below,
-    stays, and the take's own with those that it is the difference from."""
-    strips, left = take_strips(owner), current_action(owner)
+    """Let a strip's take be seen, with those that it is the difference from, and hide the other
+    results of its recording; this stays below as it is."""
+    strips, left = _relatives(owner, action), current_action(owner)
     needed, seen = [action], set()
     while needed:
         showing = needed.pop()
@@ -101,27 +117,34 @@ def show_strip(owner: bpy.types.Object, action: bpy.types.Action) -> None:
         held = (strip.action for _, strip in strips if shown_by(strip) == showing)
         beside = (each.get(BESIDE) for each in held if each is not None)
         needed += [each for each in beside if each is not None and each not in seen]
-    for index, (track, strip) in enumerate(strips):
-        track.mute = index > 0 and shown_by(strip) not in seen
+    recording = root_of(action)
+    for track, strip in strips:
+        take = shown_by(strip)
+        if take in seen or take != recording:
+            set_seen(track, strip, take in seen)
+    mark_strips(owner)
     if left is not None and left != action:
         put_back(owner, left)
 
 
 def remove_strips(owner: bpy.types.Object, action: bpy.types.Action) -> None:
-    """Remove the tracks of an action's strips, and the difference that they hold."""
+    """Remove an action's strips, the tracks that are empty then, and the difference that they
+    hold."""
     data = owner.animation_data
     if data is None:
         return
     for track, strip in strips_of(owner, action):
         held = strip.action
-        data.nla_tracks.remove(track)
+        track.strips.remove(strip)
+        if not len(track.strips):
+            data.nla_tracks.remove(track)
         if held is not None and held != action:
             bpy.data.actions.remove(held)
 
 
 @contextmanager
 def without_strips(owner: bpy.types.Object) -> Iterator[None]:
-    """Context in which no strip that Hangtime made is seen."""
+    """Context in which no strip of the takes of `owner` is seen."""
     tracks = [(track, track.mute) for track, _ in take_strips(owner)]
     left = current_action(owner)
     for track, _ in tracks:

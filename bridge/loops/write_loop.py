@@ -11,7 +11,7 @@ import numpy as np
 from ...solver.arrays import FloatArray
 from ...solver.data.faults import NoRootBone
 from ...solver.data.recording import PoseTrack
-from ..accessors import armature_data, current_scene, pose_of, present
+from ..accessors import armature_data, current_scene, pose_of, present, root_of
 from ..action_slots import all_curves
 from ..armature import fcurves
 from ..armature.actions import note_take, recorded_action, show, showing_action
@@ -36,7 +36,7 @@ from ..fake_users import guard
 from ..properties.settings import settings_of
 from ..rows.choices import LoopRoot
 from ..takes.owned import owned_by, steady_channels
-from ..takes.takes import derive, free_name, root_of
+from ..takes.takes import derive, free_name
 from ..takes.write_result import forget_copied
 from .company import keep_followers
 from .cyclic_keys import repeat, write_cyclic

@@ -287,6 +287,7 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     loop: bpy.props.PointerProperty(type=HangtimeLoop, override=OVERRIDABLE)
     adapted: hidden(target(type=bpy.types.Action))
     source: hidden(target(type=bpy.types.Action))  # a result to start from; none: the recording
+    take_strips: hidden(text())  # JSON: the armature's, see marked_strips.py
     status: hidden(text())
 
 

@@ -40,8 +40,8 @@ def plain_poses(
 
 def _plain(armature: bpy.types.Object, curves: fcurves.CurveHolder, bones: list[str]) -> bool:
     data = present(armature.animation_data)
-    ours = {track.name for track, _ in take_strips(armature)}
-    others = data.use_nla and any(track.name not in ours for track in data.nla_tracks)
+    every = sum(len(track.strips) for track in data.nla_tracks)
+    others = data.use_nla and every > len(take_strips(armature))
     whole = data.action_blend_type == "REPLACE" and data.action_influence == 1.0
     moved = armature.parent is not None or len(armature.constraints) > 0
     moved |= any(not curve.data_path.startswith("pose.") for curve in curves.fcurves)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from ..accessors import HOLDS, current_action, source_of
+from ..accessors import HOLDS, current_action, root_of, source_of
 from ..action_slots import copied_slots, lost_slot, settle_copy
 from ..armature.actions import recorded_action, show
 from ..armature.fcurves import slot_identifier
@@ -23,6 +23,7 @@ from ..armature.played import adopt_strip, in_scene_time, strip_time
 from ..armature.traces_store import forget, put_by, take_up
 from ..fake_users import guard
 from ..hidden_texts import spans_text
+from ..marked_strips import MARKS
 from ..properties.overridden_lists import linked_count
 from ..properties.settings import (
     HangtimeAction,
@@ -48,13 +49,13 @@ from .span import ResultSpan
 
 _OF_RECORDING = ("repairs", "findings", "examined", "examination_stale", "feet")
 _NOT_ASKED = (  # of the next result
-    *("marks", "adapted", "source", "status", "met", "measured_height", "fit_quality"),
+    *("marks", "adapted", "source", MARKS.name, "status", "met", "measured_height", "fit_quality"),
     *("shapes_told", "unseen", "analysed_motion", "analysed_span", "analysed_contacts"),
     *("whole_stance", "moving", "active_contact", "active_constraint", "active_surface"),
     "active_body_change",
     *("keep_polish", *_OF_RECORDING),
 )
-_NOT_KEPT = ("marks", "adapted", "source", *_OF_RECORDING)
+_NOT_KEPT = ("marks", "adapted", "source", MARKS.name, *_OF_RECORDING)
 SPANS = spans_text("spans")
 _LONGEST = 63 - len(" adapted 99")  # bytes of a name of which the rest is ours
 
@@ -92,14 +93,6 @@ class AskedSettings:
         surfaces = surfaces_digest(settings, armature, {})
         key = settings_digest(settings, _NOT_ASKED, off=False)
         return AskedSettings(held, key, surfaces, Conditions.of(armature).as_text())
-
-
-def root_of(action: bpy.types.Action) -> bpy.types.Action:
-    """The recording that a take goes back to."""
-    source = source_of(action)
-    while source is not None:
-        action, source = source, source_of(source)
-    return action
 
 
 def derive(action: bpy.types.Action, source: bpy.types.Action, armature: bpy.types.Object) -> None:

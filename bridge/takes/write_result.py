@@ -9,7 +9,7 @@ from functools import partial
 import bpy
 
 from ...solver.data.faults import NoNewSlot
-from ..accessors import ATTRIBUTE, current_action, present, source_of
+from ..accessors import ATTRIBUTE, current_action, present, root_of, source_of
 from ..action_slots import all_curves, bag_of, home_of, settle
 from ..armature import fcurves
 from ..armature.actions import note_take, recorded_action, show, showing_action
@@ -25,7 +25,7 @@ from ..rows.choices import After, WrittenAs
 from .difference import difference_of
 from .plan import AdaptedMotion
 from .span import ResultSpan, WrittenTake
-from .takes import derive, free_name, root_of
+from .takes import derive, free_name
 from .whole_take import write_take
 
 _NO_SLOTS = "Blender before 4.5 cannot copy one"

@@ -6,7 +6,7 @@ from math import isclose
 
 import bpy
 
-from ...bridge.accessors import current_scene, present, source_of
+from ...bridge.accessors import current_scene, present, root_of, source_of
 from ...bridge.armature.actions import read_recorded_incrementally, recorded_action
 from ...bridge.armature.incremental import Incremental, complete
 from ...bridge.armature.poses import frames_per_second, require_unstretched
@@ -43,7 +43,6 @@ from ...bridge.takes.takes import (
     derive,
     free_name,
     note_made,
-    root_of,
 )
 from ...bridge.takes.write_result import (
     combine,

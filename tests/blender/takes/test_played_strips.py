@@ -1,8 +1,10 @@
-"""A recording that a strip of the artist's plays later, slower or in part, and its results."""
+"""A recording that a strip of the artist's plays later, slower or in part, and its results; what
+else the artist's strips play stays as it is."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -179,6 +181,141 @@ def test_a_take_that_is_assigned_again_is_read_at_its_own_frames() -> None:
     armature.animation_data.action = take
     assert shown_range(armature, take) == (1.0, 60.0)
     assert read_recorded(armature, None, None).frames[[0, -1]].tolist() == [1.0, 60.0]
+
+
+def test_who_plays_the_same_take_twice_is_still_refused() -> None:
+    armature = played()
+    extra = armature.copy()
+    bpy.context.scene.collection.objects.link(extra)
+    track, take = extra.animation_data.nla_tracks[0], current_action(armature)
+    track.strips.new("Again", 200, take)
+    adapt(armature, 50.0, 60.0, written_as=WrittenAs.STRIP)
+    assert current_action(extra) is None
+    with pytest.raises(UnreadStrips):
+        read_recording(extra)
+
+
+def test_an_artists_strip_in_a_results_track_goes_on_and_stays() -> None:
+    armature = played()
+    take, tracks = current_action(armature), armature.animation_data.nla_tracks
+    result = adapt(armature, 50.0, 60.0, written_as=WrittenAs.STRIP)
+    idle = take.copy()
+    tracks[-1].strips.new("Idle", 200, idle)
+    frames = np.arange(200.0, 230.0)
+    seen = heights(armature, frames)
+    show(armature, take)
+    assert current_action(armature) == take
+    np.testing.assert_array_equal(heights(armature, frames), seen)
+    show(armature, result)
+    bpy.context.scene.hangtime.armature = armature
+    assert bpy.ops.hangtime.discard() == {"FINISHED"}
+    np.testing.assert_array_equal(heights(armature, frames), seen)
+    assert [strip.name for track in tracks for strip in track.strips] == ["Take", "Idle"]
+
+
+def test_a_copy_of_a_result_that_the_artist_lays_is_never_muted() -> None:
+    armature = played()
+    take, tracks = current_action(armature), armature.animation_data.nla_tracks
+    result = adapt(armature, 50.0, 60.0, written_as=WrittenAs.STRIP)
+    varied = tracks.new()
+    varied.strips.new("Varied", 200, result.copy())
+    for shown in (take, result):
+        show(armature, shown)
+        assert current_action(armature) == shown
+        assert not varied.mute
+
+
+def test_each_of_two_recordings_is_switched_for_itself() -> None:
+    armature = played()
+    first, tracks = current_action(armature), armature.animation_data.nla_tracks
+    adapt(armature, 50.0, 60.0, written_as=WrittenAs.STRIP)
+    own = list(tracks)
+    second, track = first.copy(), tracks.new()
+    track.strips.new("Second", 200, second)
+    for each in own:
+        each.mute = True
+    result = adapt(armature, 210.0, 220.0, written_as=WrittenAs.STRIP)
+    assert [each.mute for each in tracks] == [True, True, False, False]
+    own[1].mute = False  # the shot as a whole
+    for shown, muted in ((second, True), (result, False)):
+        show(armature, shown)
+        assert [each.mute for each in tracks] == [True, False, False, muted]
+    assert recorded_action(armature) == second
+
+
+def test_a_result_that_the_artist_pushed_down_is_switched_once_it_alone_is_seen() -> None:
+    armature = played()
+    take, data = current_action(armature), armature.animation_data
+    before = heights(armature, SCENE)
+    result = adapt(armature, 50.0, 60.0)
+    data.nla_tracks.new().strips.new("Pushed", int(result.frame_range[0]), result)
+    data.action = None
+    assert current_action(armature) is None
+    with pytest.raises(UnreadStrips):
+        read_recording(armature)
+    data.nla_tracks[0].mute = True
+    after = heights(armature, SCENE)
+    assert current_action(armature) == result
+    show(armature, take)
+    np.testing.assert_array_equal(heights(armature, SCENE), before)
+    show(armature, result)
+    np.testing.assert_array_equal(heights(armature, SCENE), after)
+    assert data.action is None
+
+
+def test_strips_are_found_again_by_whatever_name_and_on_a_copied_armature() -> None:
+    armature = played()
+    take = current_action(armature)
+    result = adapt(armature, 50.0, 60.0, written_as=WrittenAs.STRIP)
+    copied = armature.copy()
+    bpy.context.scene.collection.objects.link(copied)
+    for track in armature.animation_data.nla_tracks:
+        track.name = track.strips[0].name = f"My {track.name}"
+    for each in (armature, copied):
+        for shown in (take, result):
+            show(each, shown)
+            assert current_action(each) == shown
+            shown.name = f"Best {shown.name}"  # after the strips, by which it is found again
+        assert each.animation_data.action is None
+
+
+@pytest.mark.parametrize("written_as", [f for f in FORMS if f is not WrittenAs.SLOT])
+def test_results_of_a_linked_take_are_switched_in_a_file_that_was_opened_again(
+    written_as: WrittenAs, tmp_path: Path
+) -> None:
+    library, shot = str(tmp_path / "library.blend"), str(tmp_path / "shot.blend")
+    armature = played()
+    bpy.data.libraries.write(library, {current_action(armature)})
+    with bpy.data.libraries.load(library, link=True) as (_, wanted):
+        wanted.actions = [current_action(armature).name]
+    strip = armature.animation_data.nla_tracks[0].strips[0]
+    strip.action = wanted.actions[0]
+    strip.frame_start, strip.frame_end = START, START + SCALE * 59.0
+    before = heights(armature, SCENE)
+    adapt(armature, 50.0, 60.0, written_as=written_as)
+    after = heights(armature, SCENE)
+    bpy.ops.wm.save_as_mainfile(filepath=shot)
+    bpy.ops.wm.open_mainfile(filepath=shot)
+    armature = bpy.context.view_layer.objects.active
+    bpy.context.scene.hangtime.armature = armature
+    for shown, button in ((before, "show_recording"), (after, "show_adapted"), (before, "discard")):
+        assert getattr(bpy.ops.hangtime, button)() == {"FINISHED"}
+        np.testing.assert_array_equal(heights(armature, SCENE), shown)
+
+
+def test_strips_that_earlier_versions_marked_by_their_actions_are_known() -> None:
+    armature = played()
+    take, data = current_action(armature), armature.animation_data
+    result = adapt(armature, 50.0, 60.0, written_as=WrittenAs.STRIP)
+    armature.hangtime.property_unset("take_strips")
+    for action in (take, result):
+        action["hangtime_in_strip"] = True
+    for shown in (take, result):
+        show(armature, shown)
+        assert current_action(armature) == shown
+    second = adapt(armature, 50.0, 60.0, written_as=WrittenAs.STRIP)
+    assert current_action(armature) == second
+    assert [track.mute for track in data.nla_tracks] == [False, True, False]
 
 
 def repeats(armature: bpy.types.Object) -> None:
