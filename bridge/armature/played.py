@@ -130,8 +130,9 @@ def playing_strip(owner: bpy.types.Object, strip: bpy.types.NlaStrip) -> Iterato
     every = list(data.nla_tracks)
     own = next(track for track in every if strip in list(track.strips))
     above, takes = every[every.index(own) + 1 :], [track for track, _ in take_strips(owner)]
-    muted = [(track, track.mute) for track in every if track in above or track in takes]
-    muted += [(own, own.mute), (strip, strip.mute)]
+    muting: list[bpy.types.NlaTrack | bpy.types.NlaStrip] = [own, strip]
+    muting += [track for track in every if track != own and (track in above or track in takes)]
+    muted = [(each, each.mute) for each in muting]
     fcurves.assign(owner, None)
     try:
         for each, _ in muted:

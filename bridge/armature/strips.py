@@ -26,6 +26,8 @@ from ..marked_strips import Strips, set_seen
 from ..unkeyed import put_back
 from . import fcurves
 
+_SAME = 1e-3  # frames
+
 
 def strips_of(owner: bpy.types.Object, action: bpy.types.Action) -> Strips:
     """The strips of the takes of `owner` that show an action, with their tracks."""
@@ -44,24 +46,67 @@ def lay_strips(
     result: bpy.types.Action,
     slot: str | None,
     difference: bpy.types.Action | None = None,
+    *,
+    alone: bool = False,
 ) -> None:
     """Put a result into a strip above the take's, which is laid below where it is not yet; strips
     of the artist's above the take's stay above, and so act on the result.
 
     No action is assigned any more; the result is what is shown. slot: identifier of the slot that
     all have for `owner`. difference: what combined with the take is the result; without it the
-    result's strip replaces the take's.
+    result's strip replaces the take's. alone: nothing of the difference is seen beside its frames.
     """
     extrapolation = owner.animation_data_create().action_extrapolation
     fcurves.assign(owner, None)
     if not strips_of(owner, take):
         _lay(owner, take, take, slot).extrapolation = extrapolation
+    ((_, below), *_) = strips_of(owner, take)
     if difference is None:
-        _lay(owner, take, result, slot)
+        _reach(_lay(owner, take, result, slot), below)
     else:
         difference[SHOWS], difference[BESIDE] = result, take
-        _lay(owner, take, difference, slot).blend_type = "COMBINE"
+        strip = _lay(owner, take, difference, slot)
+        strip.blend_type = "COMBINE"
+        if alone:
+            strip.extrapolation = "NOTHING"
+        else:
+            _reach(strip, below)
     show_strip(owner, result)
+
+
+def _reach(strip: bpy.types.NlaStrip, below: bpy.types.NlaStrip) -> None:
+    """Let a result's strip show as far beyond its ends as the take's: where that ends, other strips
+    of the shot are seen; and until there, nothing is but the result."""
+    if below.extrapolation == "HOLD":
+        return
+    start, end = below.frame_start, below.frame_end
+    if strip.blend_type == "REPLACE":
+        start, end = min(start, strip.frame_start), max(end, strip.frame_end)
+    _span(strip, start, end)
+    strip.extrapolation = below.extrapolation
+
+
+def reach_as_strip(
+    owner: bpy.types.Object, take: bpy.types.Action, result: bpy.types.Action, *, in_slot: bool
+) -> str | None:
+    """Let a result that is assigned show as far beyond its ends as its take's strip, where it has
+    one. Returns its name where the result cannot, and hides others: it ends before the strip, of
+    which the rest would be seen, or will be a slot, whose ends are its whole action's to Blender.
+    """
+    playing = strips_of(owner, take)
+    if not playing:
+        return None
+    data, below = present(owner.animation_data), playing[0][1]
+    first, last = span_of(result)
+    reaches = first < below.frame_start + _SAME and last > below.frame_end - _SAME
+    data.action_extrapolation = below.extrapolation if reaches and not in_slot else "HOLD"
+    return None if data.action_extrapolation == below.extrapolation else below.name
+
+
+def _span(strip: bpy.types.NlaStrip, start: float, end: float) -> None:
+    """Let a strip show each frame of its action at that frame, between these."""
+    strip.action_frame_start, strip.action_frame_end = start, end
+    strip.frame_start, strip.frame_end = start, max(end, start + 1.0)
 
 
 def layers_above(owner: bpy.types.Object, take: bpy.types.Action) -> list[str]:
@@ -91,8 +136,7 @@ def _lay(
     named = [each for each in slots if each.identifier == slot]
     if slots:
         strip.action_slot = (named or slots)[0]
-    strip.action_frame_start, strip.action_frame_end = start, end
-    strip.frame_start, strip.frame_end = start, max(end, start + 1.0)
+    _span(strip, start, end)
     strip.blend_type, strip.extrapolation = "REPLACE", "HOLD"
     mark_strips(owner, strip)
     return strip

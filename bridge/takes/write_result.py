@@ -15,7 +15,7 @@ from ..armature import fcurves
 from ..armature.actions import note_take, recorded_action, show, showing_action
 from ..armature.incremental import Incremental, complete
 from ..armature.played import in_scene_time, scene_copy
-from ..armature.strips import lay_strips, strips_of
+from ..armature.strips import lay_strips
 from ..armature.write import write_incrementally
 from ..companions.found import placed_by_keys
 from ..controls.driven import is_driven
@@ -69,10 +69,7 @@ def combine(armature: bpy.types.Object, action: bpy.types.Action, after: After) 
     take, slot = source_of(action), fcurves.slot_identifier(armature)
     with in_scene_time(armature, present(take)) as played:
         more = difference_of(armature, played, action, slot)
-    lay_strips(armature, present(take), action, slot, more)
-    if after is After.CUT:  # nothing of it is left beside the adapted frames
-        for _, strip in strips_of(armature, action):
-            strip.extrapolation = "NOTHING"
+    lay_strips(armature, present(take), action, slot, more, alone=after is After.CUT)
     show(armature, action, slot)
 
 

@@ -10,7 +10,7 @@ from ...bridge.accessors import current_scene, present, root_of, source_of
 from ...bridge.armature.actions import read_recorded_incrementally, recorded_action
 from ...bridge.armature.incremental import Incremental, complete
 from ...bridge.armature.poses import frames_per_second, require_unstretched
-from ...bridge.armature.strips import layers_above
+from ...bridge.armature.strips import layers_above, reach_as_strip
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
 from ...bridge.constraints.standing import missed_contacts
@@ -95,6 +95,10 @@ LAYERS_HIDDEN = (
     "Strips above the take's ({}) do not add to this result, for an action goes before all strips; "
     "choose NLA Strip, Replace or Combine, under Written As"
 )
+OTHERS_HIDDEN = (
+    "Before and after its own frames this result hides other strips of the shot, which the take's "
+    "strip ({}) does not; choose NLA Strip, Replace, under Written As"
+)
 
 
 def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
@@ -160,7 +164,8 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     if options.written_as is WrittenAs.SLOT and options.markers is ContactMarkers.ACTION:
         told = [*told, MARKERS_LEFT_OUT]
     if options.written_as in (WrittenAs.ACTION, WrittenAs.SLOT):
-        told = [*told, *_layers_lines(armature, action)]
+        in_slot = options.written_as is WrittenAs.SLOT
+        told = [*told, *_layers_lines(armature, action, in_slot=in_slot)]
     _note(armature, armature, action, answer, told)
     if written is not None:
         _warn_of_controls(armature, action, written.controls)
@@ -211,10 +216,16 @@ def _finish(
     renewal.note(action, time, (frames[0], frames[-1]))
 
 
-def _layers_lines(armature: bpy.types.Object, action: bpy.types.Action) -> list[str]:
-    """Which of the artist's strips acted on what a result was made from, and do not on it."""
-    layers = layers_above(armature, present(source_of(action)))
-    return [LAYERS_HIDDEN.format(", ".join(layers))] if layers else []
+def _layers_lines(
+    armature: bpy.types.Object, action: bpy.types.Action, *, in_slot: bool = False
+) -> list[str]:
+    """Which of the artist's strips acted on what a result was made from, and do not on it, and
+    whether it hides others of the shot."""
+    take = present(source_of(action))
+    layers = layers_above(armature, take)
+    hiding = reach_as_strip(armature, take, action, in_slot=in_slot)
+    lines = [LAYERS_HIDDEN.format(", ".join(layers))] if layers else []
+    return lines if hiding is None else [*lines, OTHERS_HIDDEN.format(hiding)]
 
 
 def _solved_contacts(asked: Asked, answer: Adapted) -> SolvedContacts:

@@ -17,7 +17,7 @@ from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.keys_digest import keys_digest
 from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.armature.read import read_recording
-from hangtime.bridge.armature.strips import layers_above
+from hangtime.bridge.armature.strips import layers_above, reach_as_strip
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.rows.choices import After, WrittenAs
 from hangtime.bridge.takes.plan import AdaptedMotion
@@ -301,6 +301,41 @@ def test_results_of_a_linked_take_are_switched_in_a_file_that_was_opened_again(
     for shown, button in ((before, "show_recording"), (after, "show_adapted"), (before, "discard")):
         assert getattr(bpy.ops.hangtime, button)() == {"FINISHED"}
         np.testing.assert_array_equal(heights(armature, SCENE), shown)
+
+
+def with_walk(armature: bpy.types.Object) -> None:
+    """Another strip before the take's, below it, neither of which is held."""
+    tracks, take = armature.animation_data.nla_tracks, current_action(armature)
+    walk = tracks.new()
+    walk.strips.new("Walk", -100, take.copy())
+    for track in tracks:
+        track.strips[0].extrapolation = "NOTHING"
+    walk.mute = True
+
+
+@pytest.mark.parametrize("written_as", [WrittenAs.ACTION, WrittenAs.STRIP, WrittenAs.COMBINE])
+@pytest.mark.parametrize("cut", [False, True])
+def test_a_result_shows_as_far_beyond_its_ends_as_the_strip_of_its_take(
+    written_as: WrittenAs, cut: bool
+) -> None:
+    armature = played()
+    with_walk(armature)
+    take, walk = current_action(armature), armature.animation_data.nla_tracks[-1]
+    beyond, inside = np.r_[-90.0:39.0, 130.0:140.0], np.arange(50.0, 61.0)
+    recorded = heights(armature, inside)
+    walk.mute = False
+    before = heights(armature, beyond)
+    walk.mute = True
+    after = After.CUT if cut else After.CARRY
+    result = adapt(armature, 50.0, 60.0, written_as=written_as, after=after)
+    hiding = None
+    if written_as is WrittenAs.ACTION:
+        hiding = reach_as_strip(armature, take, result, in_slot=False)
+    walk.mute = False
+    np.testing.assert_allclose(heights(armature, inside) - recorded, 0.1, atol=1e-5)
+    assert (hiding == "Take") is (cut and written_as is WrittenAs.ACTION)
+    if hiding is None:
+        np.testing.assert_array_equal(heights(armature, beyond), before)
 
 
 def test_strips_that_earlier_versions_marked_by_their_actions_are_known() -> None:
