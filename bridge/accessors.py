@@ -115,6 +115,34 @@ def assigned_action(owner: bpy.types.Object) -> bpy.types.Action | None:
     return result_in(data.action, getattr(data, "action_slot", None)) or data.action
 
 
+def played_source(armature: bpy.types.Object, action: bpy.types.Action) -> bpy.types.Action:
+    """What a take that an armature shows was made from; the take itself of a recording, and of a
+    result that came into another shot, in a strip there: nothing of its sources is played."""
+    source = source_of(action)
+    return action if source is None or _came_alone(armature, action) else source
+
+
+def _came_alone(armature: bpy.types.Object, action: bpy.types.Action) -> bool:
+    """Whether a strip plays a result that was made for another armature, or of other frames, and no
+    strip what it goes back to."""
+    if assigned_action(armature) is not None:
+        return False
+    played = {shown_by(strip) for _, strip in take_strips(armature)}
+    source = source_of(action)
+    while source is not None:
+        if source in played:
+            return False
+        source = source_of(source)
+    return not made_for(armature, action) or mapped_strip(armature, action) is not None
+
+
+def made_for(armature: bpy.types.Object, result: bpy.types.Action) -> bool:
+    """Whether a result is an armature's own. Those of earlier versions do not tell, and are of any;
+    those of a deleted one are of none."""
+    made = attached(result)
+    return bool(made.maker == armature or (made.maker is None and not made.owned))
+
+
 def shown_range(armature: bpy.types.Object, action: bpy.types.Action) -> tuple[float, float]:
     """First and last scene frame on which an armature shows a take."""
     first, last = span_of(action)

@@ -10,7 +10,7 @@ import bpy
 
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import Recording
-from ..accessors import assigned_action, current_action, current_scene, mapped_strip, source_of
+from ..accessors import assigned_action, current_action, current_scene, mapped_strip, played_source
 from ..properties.settings import settings_of
 from ..unkeyed import note_unkeyed
 from . import fcurves
@@ -24,12 +24,12 @@ from .strips import show_strip, strips_of, without_strips
 def recorded_action(armature: bpy.types.Object) -> bpy.types.Action | None:
     """Recorded action: the armature's own, or the one that this was adapted from.
 
-    A result counts as the recording where the artist starts from it.
+    A result counts as the recording where the artist starts from it, and in another shot.
     """
     action = current_action(armature)
     if action is None or action == settings_of(armature).source:
         return action
-    return source_of(action) or action
+    return played_source(armature, action)
 
 
 def read_recorded(

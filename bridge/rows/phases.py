@@ -84,14 +84,14 @@ def recorded_span(settings: Settings) -> tuple[float, float] | None:
     """First and last frame of the recording's action, where there is one."""
     from ..accessors import (
         current_action,
+        played_source,
         shown_range,
-        source_of,
     )  # late: kinds load without Blender
 
     action = current_action(settings.id_data)
     if action is None:
         return None
-    return shown_range(settings.id_data, source_of(action) or action)
+    return shown_range(settings.id_data, played_source(settings.id_data, action))
 
 
 def phases_of(settings: Settings) -> tuple[PhaseSpan, ...]:

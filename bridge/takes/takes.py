@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from ..accessors import HOLDS, current_action, root_of, source_of
+from ..accessors import HOLDS, current_action, made_for, root_of, source_of
 from ..action_slots import copied_slots, lost_slot, settle_copy
 from ..armature.actions import recorded_action, show
 from ..armature.fcurves import slot_identifier
@@ -184,18 +184,12 @@ def _branch(
 def results_from(
     action: bpy.types.Action, armature: bpy.types.Object | None = None
 ) -> list[bpy.types.Action]:
-    """The results that were made from a take, the newest last. armature: for which; None for any.
-
-    Those of earlier versions do not tell for which; those of a deleted one are of none.
-    """
+    """The results that were made from a take, the newest last. armature: for which; None for
+    any."""
     found = [o for o in bpy.data.actions if source_of(o) == action and not lost_slot(o)]
     if armature is not None:
-        found = [o for o in found if _is_of(action_settings(o), armature)]
+        found = [o for o in found if made_for(armature, o)]
     return sorted(found, key=lambda other: int(action_settings(other).count))
-
-
-def _is_of(made: HangtimeAction, armature: bpy.types.Object) -> bool:
-    return bool(made.maker == armature or (made.maker is None and not made.owned))
 
 
 def show_take(armature: bpy.types.Object, action: bpy.types.Action) -> None:
@@ -227,7 +221,7 @@ def keep_edit(armature: bpy.types.Object) -> None:
 def _own_result(armature: bpy.types.Object) -> bpy.types.Action | None:
     """The result of the edit at work; a copied armature points to one whose edit is another's."""
     result: bpy.types.Action | None = settings_of(armature).adapted
-    return result if result is not None and _is_of(action_settings(result), armature) else None
+    return result if result is not None and made_for(armature, result) else None
 
 
 def _take_up(armature: bpy.types.Object, action: bpy.types.Action) -> None:

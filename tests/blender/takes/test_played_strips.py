@@ -338,6 +338,30 @@ def test_a_result_shows_as_far_beyond_its_ends_as_the_strip_of_its_take(
         np.testing.assert_array_equal(heights(armature, beyond), before)
 
 
+@pytest.mark.parametrize("other", [True, False])
+def test_a_kept_result_in_a_strip_of_another_shot_is_the_recording(other: bool) -> None:
+    armature = played()
+    take = current_action(armature)
+    kept = adapt(armature, 50.0, 60.0)
+    if other:
+        armature = armature.copy()
+        bpy.context.scene.collection.objects.link(armature)
+    armature.animation_data_clear()
+    armature.hangtime.property_unset("take_strips")
+    armature.animation_data_create().nla_tracks.new().strips.new("Kept", 200, kept)
+    assert recorded_action(armature) == kept
+    later = 200.0 - kept.frame_range[0]
+    frames = np.arange(60.0, 80.0) + later
+    was = heights(armature, frames)
+    assert read_recorded(armature, None, None).frames[0] == 200.0
+    result = adapt(armature, 65.0 + later, 75.0 + later)
+    assert (source_of(result), source_of(kept)) == (kept, take)
+    np.testing.assert_allclose((heights(armature, frames) - was)[5:16], 0.1, atol=1e-5)
+    show(armature, recorded_action(armature))
+    assert current_action(armature) == recorded_action(armature) == kept
+    np.testing.assert_array_equal(heights(armature, frames), was)
+
+
 def test_strips_that_earlier_versions_marked_by_their_actions_are_known() -> None:
     armature = played()
     take, data = current_action(armature), armature.animation_data
