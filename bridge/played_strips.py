@@ -18,7 +18,6 @@ _SAME = 1e-4  # frames
 
 SEVERAL = "are several, and what they make together has no keys of its own"
 MUTED, ALL_MUTED = "is muted", "are all muted"
-UNUSED = "would play if the nonlinear animation were not switched off"
 STARRED = "plays on a starred track, which would hide every result, so take the star off"
 
 

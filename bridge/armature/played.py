@@ -16,6 +16,7 @@ from ...solver.data.faults import (
     NoAction,
     PosedByOthers,
     ScaledStrip,
+    StripsOff,
     UnreadStrips,
     UnseenSupport,
 )
@@ -26,7 +27,6 @@ from ..played_strips import (
     ALL_MUTED,
     MUTED,
     STARRED,
-    UNUSED,
     StripTime,
     played_strip,
     time_of,
@@ -54,7 +54,9 @@ def why_no_action(owner: bpy.types.Object) -> Fault:
     if data is None or data.action is not None or not unseen:
         leaders = _leaders(owner)
         return PosedByOthers(owner.name, leaders) if leaders else NoAction(owner.name)
-    silent = UNUSED if not data.use_nla else MUTED if len(unseen) == 1 else ALL_MUTED
+    if not data.use_nla:
+        return StripsOff(owner.name, tuple(strip.name for strip in unseen))
+    silent = MUTED if len(unseen) == 1 else ALL_MUTED
     why = why_unread(owner, strips) if strips else silent
     if why is None:
         return NoAction(owner.name)

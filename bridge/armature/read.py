@@ -35,7 +35,8 @@ def read_recording(
     it was. The recording is called what the action is called.
 
     Raises NoArmature, LibraryMissing, NoBones, NoAction (also for an action without curves or
-    without a slot for this armature), UnreadStrips, BlendedAction, NonFiniteKey, BadScale.
+    without a slot for this armature), UnreadStrips, StripsOff, BlendedAction, NonFiniteKey,
+    BadScale.
     """
     frames = whole_frames(armature, first, last, beyond)
     return record(present(armature), frames)

@@ -16,6 +16,9 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     faults.UnreadStrips: "The NLA strips that “{armature}” performs cannot be read: {strips:names} "
     "{why}. Leave one strip unmuted that plays its action once (any start, any scale), or assign "
     "the action.",
+    faults.StripsOff: "The nonlinear animation of “{armature}” is switched off, so that nothing in "
+    "its strips ({strips:names}) plays; switch it on (Nonlinear Animation editor, the tick beside "
+    "the armature's name), or assign the action.",
     faults.BlendedAction: "The action “{action}” is blended with the NLA strips below it "
     "({strips:names}), and what they make together has no keys of its own; in the Nonlinear "
     "Animation editor give the action Blending Replace and Influence 1, or mute these strips.",

@@ -42,6 +42,7 @@ from .recordings import OutsideKeys as OutsideKeys
 from .recordings import RateChanged as RateChanged
 from .recordings import ScaledStrip as ScaledStrip
 from .recordings import SpanChanged as SpanChanged
+from .recordings import StripsOff as StripsOff
 from .recordings import TextCure as TextCure
 from .recordings import TimeStretched as TimeStretched
 from .recordings import Treadmill as Treadmill

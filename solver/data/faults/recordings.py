@@ -41,6 +41,14 @@ class UnreadStrips(Fault):
 
 
 @dataclass
+class StripsOff(Fault):
+    """Strips would play, but the armature's nonlinear animation is switched off."""
+
+    armature: str
+    strips: tuple[str, ...]
+
+
+@dataclass
 class BlendedAction(Fault):
     """The action is blended with strips below it: the pose is no longer what its keys say."""
 
