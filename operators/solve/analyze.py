@@ -31,6 +31,8 @@ from ...solver.data.faults import (
     LostEdits,
     MissingPart,
     OddHeight,
+    OutsideKeys,
+    SourceOutsideKeys,
     UnseenSupport,
 )
 from ...solver.data.loop import Cycle
@@ -181,7 +183,7 @@ def analysis(
         recording = yield from read_wanted(armature)
     recorded = shown_range(armature, present(recorded_action(armature)))
     span = span_of(settings, recording)
-    require_inside(span, armature.name, recorded)
+    _require_inside(armature, span, recorded)
     find_parts(armature)
     yield None
     for missing in missing_parts(settings):
@@ -281,6 +283,20 @@ def _leave_out_bind_pose(settings: HangtimeSettings, recording: Recording) -> st
         else "The first frame holds"
     )
     return f". {held} the rest pose; the range begins at frame {frames[count]:g}"
+
+
+def _require_inside(
+    armature: bpy.types.Object, span: tuple[float, float], recorded: tuple[float, float]
+) -> None:
+    """Raises as `require_inside`, and SourceOutsideKeys where the result that is shown has keys."""
+    shown, source = present(current_action(armature)), present(recorded_action(armature))
+    try:
+        require_inside(span, armature.name, recorded)
+    except OutsideKeys:
+        first, last = shown_range(armature, shown)
+        if shown == source or span[0] >= last or span[1] <= first:
+            raise
+        raise SourceOutsideKeys(shown.name, source.name, *recorded) from None
 
 
 def _take_cycle(settings: HangtimeSettings, cycle: Cycle) -> None:

@@ -224,6 +224,9 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     "{factor:plain} would make a person of it.",
     faults.OutsideKeys: "In the chosen frames “{armature}” has no keys; they lie from frame "
     "{first:g} to {last:g}, so choose frames there.",
+    faults.SourceOutsideKeys: "What is read is “{source}”, from which “{result}” was made, and it "
+    "has no keys in the chosen frames; they lie from frame {first:g} to {last:g}. To read the "
+    "result that is shown press Start From: This Result, or choose frames there.",
     faults.UnknownContactName: "There is no contact “{name}” in these frames; there are "
     "{known:names}.",
     faults.UnknownBone: "“{request}” names the bone “{bone}”, which the armature does not have; "

@@ -41,6 +41,7 @@ from .recordings import OptionNotTaken as OptionNotTaken
 from .recordings import OutsideKeys as OutsideKeys
 from .recordings import RateChanged as RateChanged
 from .recordings import ScaledStrip as ScaledStrip
+from .recordings import SourceOutsideKeys as SourceOutsideKeys
 from .recordings import SpanChanged as SpanChanged
 from .recordings import StripsOff as StripsOff
 from .recordings import TextCure as TextCure

@@ -350,6 +350,16 @@ class OutsideKeys(Fault):
 
 
 @dataclass
+class SourceOutsideKeys(Fault):
+    """The same of what the result that is shown was made from, while the result has keys there."""
+
+    result: str
+    source: str
+    first: float  # frame with keys
+    last: float
+
+
+@dataclass
 class UnknownContactName(Fault):
     """A correction names a contact that was not found."""
 

@@ -362,6 +362,16 @@ def test_a_kept_result_in_a_strip_of_another_shot_is_the_recording(other: bool) 
     np.testing.assert_array_equal(heights(armature, frames), was)
 
 
+def test_frames_of_a_shown_result_that_its_source_has_not_are_said_to_need_start_from() -> None:
+    armature = played()
+    kept, settings = adapt(armature, 50.0, 60.0), armature.hangtime
+    armature.animation_data.nla_tracks.remove(armature.animation_data.nla_tracks[0])
+    settings.use_range, settings.first_frame, settings.last_frame = True, 70, 100
+    bpy.context.scene.hangtime.armature = armature
+    with pytest.raises(RuntimeError, match=f"from which “{kept.name}” was made.*Start From"):
+        bpy.ops.hangtime.analyze()
+
+
 def test_strips_that_earlier_versions_marked_by_their_actions_are_known() -> None:
     armature = played()
     take, data = current_action(armature), armature.animation_data
