@@ -13,9 +13,9 @@ from ..analysis.performance import Performance, contact_points, leans
 from ..arrays import FloatArray
 from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import PointKind
+from ..numerics.runs import runs
 from ..scene.fall_rate import usual_rates
 from .finding import Finding, FindingKind
-from .local_poses import runs
 from .repairs import Repairs
 
 CLEAR = 0.02  # of the height, by which all points of the feet are up

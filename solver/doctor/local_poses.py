@@ -9,6 +9,7 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..data.recording import Recording
 from ..numerics.rotations import rotation_matrix, rotation_vector
+from ..numerics.runs import runs
 
 TOGETHER = 512  # frames of all bones, which a processor's cache holds
 SUPPORT = 2  # sound frames on each side that a gap is filled from
@@ -72,13 +73,6 @@ def fourth_differences(samples: FloatArray) -> FloatArray:
         near, far = samples[1:-3] + samples[3:-1], samples[:-4] + samples[4:]
         out[2:-2] = samples[2:-2] - (4.0 * near - far) / 6.0
     return out
-
-
-def runs(mask: BoolArray) -> list[tuple[int, int]]:
-    """First and last index of every run of True in (T,)."""
-    edges = np.diff(np.concatenate(([0], mask.astype(np.int8), [0])))
-    first, last = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
-    return list(zip(first.tolist(), last.tolist(), strict=True))
 
 
 def spans(recording: Recording, mask: BoolArray) -> tuple[tuple[float, float], ...]:

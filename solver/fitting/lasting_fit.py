@@ -14,7 +14,7 @@ import numpy as np
 from ..analysis.performance import Performance, leans, snap_tolerance
 from ..data.contacts import ContactSchedule, Interval, Phase, PhaseKind, gaps
 from ..data.row_kinds import RowKind
-from ..doctor.local_poses import runs
+from ..numerics.runs import runs
 from ..optimisation.sqp import Progress
 from ..transcription.ride import Ride
 from ..transcription.rows import Rows

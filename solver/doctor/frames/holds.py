@@ -13,8 +13,9 @@ import numpy as np
 from ...arrays import BoolArray, FloatArray
 from ...data.problem import Mend
 from ...data.recording import Recording
+from ...numerics.runs import runs
 from ..finding import Finding, FindingKind
-from ..local_poses import runs, spans
+from ..local_poses import spans
 from ..repairs import MissingFrames, Repairs
 from .missing import BESIDE, off_cubic
 

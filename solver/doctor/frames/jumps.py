@@ -9,9 +9,10 @@ import numpy as np
 from ...arrays import FloatArray
 from ...body.anatomy import Part
 from ...data.recording import Recording
+from ...numerics.runs import runs
 from ..figure import Figure
 from ..finding import Finding, FindingKind
-from ..local_poses import LocalPoses, runs
+from ..local_poses import LocalPoses
 from ..slack import slack
 from ..stretch import longest_stretch
 from .ragged import ragged_ends

@@ -10,9 +10,9 @@ import numpy as np
 from ...analysis.performance import Performance, contact_points
 from ...arrays import BoolArray, FloatArray
 from ...data.contacts import ContactPoint, PointKind
+from ...numerics.runs import runs
 from ..falls import Spans
 from ..finding import Finding, FindingKind
-from ..local_poses import runs
 from .flat_feet import STANDING_SPEED_UP
 from .footing import DRIFT, FLOOR_OFF, HONEST, LOW
 

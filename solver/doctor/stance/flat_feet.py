@@ -10,9 +10,9 @@ import numpy as np
 
 from ...arrays import BoolArray, FloatArray
 from ...data.recording import Recording
+from ...numerics.runs import runs
 from ...skeleton.parts import SIDES, Part, Side
 from ..figure import Figure
-from ..local_poses import runs
 
 FLAT = 0.06  # m/s, by which both ends of a foot that stands flat differ
 FLAT_SPEED = 0.3  # m/s, along the floor; a foot that is lifted or set down goes faster

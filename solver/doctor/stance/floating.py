@@ -11,10 +11,10 @@ import numpy as np
 from ...arrays import BoolArray, FloatArray
 from ...data.problem import Mend
 from ...data.recording import Recording
+from ...numerics.runs import runs
 from ...numerics.splines import SplineBasis, SplineTerm
 from ..figure import Figure
 from ..finding import Finding, FindingKind
-from ..local_poses import runs
 from ..repairs import Repairs
 from .flat_feet import flat_feet
 

@@ -14,11 +14,11 @@ from ...arrays import FloatArray
 from ...contacts.noisy_touches import MAX_BREAK
 from ...data.contacts import ContactSchedule, Interval, PointKind
 from ...data.recording import Recording
+from ...numerics.runs import runs
 from ...scene.support import boxes_beneath
 from ..falls import Spans
 from ..figure import Figure
 from ..finding import Finding, FindingKind
-from ..local_poses import runs
 from ..repairs import Repairs
 from .flat_feet import FLAT_SPEED, STANDING_SPEED_UP, FlatSamples, agreed
 from .trembling_feet import drift_of_stances

@@ -7,9 +7,10 @@ import numpy as np
 
 from ...analysis.performance import Performance, contact_points
 from ...arrays import BoolArray, FloatArray
+from ...numerics.runs import runs
 from ...scene.belt import belt_speed
 from ..finding import Finding, FindingKind
-from ..local_poses import runs, spans
+from ..local_poses import spans
 from ..repairs import Repairs
 from .footing import DRIFT, LEAST_STANDING, LowestPoint, standing
 

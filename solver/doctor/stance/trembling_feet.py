@@ -11,9 +11,9 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from ...arrays import BoolArray, FloatArray
 from ...data.recording import Recording
+from ...numerics.runs import runs
 from ...skeleton.parts import SIDES
 from ..figure import Figure
-from ..local_poses import runs
 from .flat_feet import FLAT, FLAT_SPEED, STANDING_SPEED_UP, agreed, foot_ends
 
 WINDOW = 0.2  # s, of the lines that tell which feet stand; a stance's own is as long as itself

@@ -14,10 +14,10 @@ from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.examination.repair import as_asked, floated, repaired
 from hangtime.solver.doctor.figure import figure_of
 from hangtime.solver.doctor.finding import FindingKind
-from hangtime.solver.doctor.local_poses import runs
 from hangtime.solver.doctor.repairs import Repairs
 from hangtime.solver.doctor.stance.flat_feet import flat_feet
 from hangtime.solver.doctor.stance.floating import find_floating, held_to_the_ground
+from hangtime.solver.numerics.runs import runs
 from hangtime.tests.helpers.clips import JUMP, load_recording
 from hangtime.tests.helpers.doctored import figure, jump
 
