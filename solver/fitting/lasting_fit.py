@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..analysis.balance import off_balance
 from ..analysis.performance import Performance, leans, snap_tolerance
 from ..data.contacts import ContactSchedule, Interval, Phase, PhaseKind, gaps
 from ..data.row_kinds import RowKind
@@ -98,7 +99,13 @@ def _doubted(found: Fit) -> tuple[Interval, ...]:
     """Where a fit far from its recording may lack what carried the body."""
     if _off(found) < FAR:
         return ()
-    return (*_never_flown(found), *leaning(found.performance, found.schedule))
+    performance, schedule = found.performance, found.schedule
+    beside = off_balance(performance, schedule)
+    return (
+        *_never_flown(found),
+        *leaning(performance, schedule),
+        *_joined(performance, schedule, beside),
+    )
 
 
 def _never_flown(found: Fit) -> tuple[Interval, ...]:
@@ -115,15 +122,23 @@ def _never_flown(found: Fit) -> tuple[Interval, ...]:
 
 
 def leaning(performance: Performance, schedule: ContactSchedule) -> tuple[Interval, ...]:
-    """Where hands, knees or the trunk are on the floor: what they carry no contact tells. No
-    moments of a flight are left between these and contacts: they would spoil the equations."""
-    times, near = performance.times, snap_tolerance(performance)
-    edges, made = np.array(schedule.boundaries), []
-    spans = [(times[a], times[b]) for a, b in runs(leans(performance, schedule.floor_m)) if b > a]
-    for start, end in spans:
-        before, after = edges[edges <= start], edges[edges >= end]
-        first = before.max() if start - before.max() < near else start
-        last = after.min() if after.min() - end < near else end
+    """Where hands, knees or the trunk are on the floor: what they carry no contact tells."""
+    times, low = performance.times, runs(leans(performance, schedule.floor_m))
+    spans = [Interval(float(times[a]), float(times[b])) for a, b in low if b > a]
+    return _joined(performance, schedule, spans)
+
+
+def _joined(
+    performance: Performance, schedule: ContactSchedule, spans: Sequence[Interval]
+) -> tuple[Interval, ...]:
+    """Intervals that begin and end where contacts or others do, if these are near: moments in
+    between, such as of a flight, would spoil the equations."""
+    near, edges = snap_tolerance(performance), np.array(schedule.boundaries)
+    made = []
+    for span in spans:
+        before, after = edges[edges <= span.start], edges[edges >= span.end]
+        first = before.max() if span.start - before.max() < near else span.start
+        last = after.min() if after.min() - span.end < near else span.end
         made.append(Interval(float(first), float(last)))
     return tuple(made)
 

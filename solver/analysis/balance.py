@@ -1,0 +1,83 @@
+"""Whether what touches can carry the body. Who sits or leans has the feet on the floor, and the
+weight on something else: the zero-moment point (Vukobratović & Borovac 2004), where one force that
+gave the body its recorded movement would meet the ground, is then beside the feet."""
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray
+from ..body.dynamics import MomentFunction
+from ..data.constants import STANDARD_GRAVITY
+from ..data.contacts import ContactSchedule, Interval
+from ..numerics.local_regression import derivative
+from ..numerics.runs import runs
+from ..unseen.support_force import HAND_OVER
+from .accelerations import SMOOTHING_FRAMES
+from .performance import Performance, contact_points
+
+BESIDE = 0.1  # m from what touches: half a foot's breadth, and as much by which masses err
+LASTS = 0.2  # s; walks, runs and jumps have up to 0.13, a hop that lands on one foot's toes 0.3
+SURELY_LASTS = 0.5  # s; longer than these, and than what joints that tremble by 3 mm make of it
+SMOOTHING = 0.06  # s, standard deviation; who leans does so for longer
+LOADED = 0.3  # body weights, upwards; a smaller force meets the ground anywhere
+_AROUND = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
+_WAYS = np.stack([np.cos(_AROUND), np.sin(_AROUND)])  # (2, W) unit vectors along the ground
+
+
+def off_balance(
+    performance: Performance, schedule: ContactSchedule, lasts: float = LASTS
+) -> tuple[Interval, ...]:
+    """Where points touch and the weight is for so long, s, so far beside them that they cannot
+    carry it, from when it leaves them until it is back; but where something unseen carries."""
+    times, beside = performance.times, _beside(performance, schedule)
+    found = []
+    for first, last in runs(beside > 0.0):
+        far = runs(beside[first : last + 1] > BESIDE)
+        if any(times[first + b] - times[first + a] >= lasts for a, b in far):
+            found.append(Interval(float(times[first]), float(times[last])))
+    return tuple(found)
+
+
+def _beside(performance: Performance, schedule: ContactSchedule) -> FloatArray:
+    """(T,) m, how far the zero-moment point is outside the hull of what touches; 0 where nothing
+    does, or something unseen may carry."""
+    times, (points, _) = performance.times, contact_points(performance)
+    touching = np.array([_during(times, schedule, name) for name in points])
+    tracks = np.array([point.track for point in points.values()])
+    known = touching.any(axis=0)
+    for unseen in schedule.unseen:
+        known &= (times < unseen.start - HAND_OVER) | (times > unseen.end + HAND_OVER)
+    count = np.maximum(touching.sum(axis=0), 1)
+    ground = np.where(touching, tracks[..., 2], 0.0).sum(axis=0) / count
+    point, loaded = _zero_moment_point(performance, ground)
+    # As far as it is beyond all points along the way in which that is furthest.
+    reached = np.where(touching[..., None], tracks[..., :2] @ _WAYS, -np.inf).max(axis=0)
+    beyond = (point @ _WAYS - reached).max(axis=1, where=known[:, None], initial=0.0)
+    return np.where(loaded, beyond, 0.0)
+
+
+def _during(times: FloatArray, schedule: ContactSchedule, point: str) -> BoolArray:
+    """(T,) whether a point touches."""
+    touches = np.zeros(len(times), dtype=np.bool_)
+    for contact in schedule.contacts:
+        if contact.point == point:
+            touches |= (times >= contact.start) & (times <= contact.end)
+    return touches
+
+
+def _zero_moment_point(
+    performance: Performance, ground: FloatArray
+) -> tuple[FloatArray, BoolArray]:
+    """(T, 2) m, where one force on the ground, at a height (T,) m, would give the body its recorded
+    movement, but for a moment about the vertical; and whether that force is large enough to tell.
+    """
+    times, take, character = performance.times, performance.take, performance.character
+    width = max(SMOOTHING, SMOOTHING_FRAMES / performance.recording.rate)
+    speeds, turning = (derivative(take.times, take.angles, times, width, n) for n in (1, 2))
+    moment = MomentFunction(character).value(performance.angles, speeds, turning)
+    moment *= STANDARD_GRAVITY  # by mass, as the force is
+    force = derivative(take.times, take.com, times, width, 2) + [0.0, 0.0, character.gravity]
+    loaded = force[:, 2] > LOADED * character.gravity
+    up, high = np.where(loaded, force[:, 2], np.inf), performance.com[:, 2] - ground
+    ahead = -(moment[:, 1] + high * force[:, 0]) / up
+    aside = (moment[:, 0] - high * force[:, 1]) / up
+    return performance.com[:, :2] + np.stack([ahead, aside], axis=1), loaded
