@@ -26,9 +26,11 @@ from ..data.contacts import (
 )
 from ..data.faults import (
     BadTiming,
+    CarriedBy,
     ClipTooShort,
     FramesFarApart,
     FramesReversed,
+    OffBalance,
     Treadmill,
     UnknownContactName,
     UnseenSupport,
@@ -40,6 +42,7 @@ from ..scene.belt import belt_speed
 from ..scene.fall_rate import fitting_rate, is_pulled_down
 from ..scene.support import boxes_beneath
 from ..unseen.free_fall import falls_beside_unseen, unseen_support
+from .balance import SURELY_LASTS, off_balance
 from .grounding import disjoint, foot_sized, grounded, parted
 from .performance import (
     Performance,
@@ -64,12 +67,13 @@ class Analysis:
     """Result of an analysis: the character's movement and its contacts.
 
     unseen: what was found where something unseen carries the body, one for each interval of the
-    schedule; of feet that slide steadily one for all.
+    schedule; of feet that slide steadily one for all. After that, where the weight is beside what
+    touches, which is no more than a hint.
     """
 
     performance: Performance
     schedule: ContactSchedule
-    unseen: tuple[UnseenSupport | Treadmill, ...] = ()
+    unseen: tuple[CarriedBy, ...] = ()
 
 
 def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
@@ -103,7 +107,7 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     told = tuple(_told(performance, schedule, skids))
     if told and problem.unseen is Unseen.REFUSE:
         raise told[0]
-    return Analysis(performance, schedule, told)
+    return Analysis(performance, schedule, (*told, *_off_balance(performance, schedule)))
 
 
 def _performed(
@@ -161,6 +165,16 @@ def _told(
         skidding = rate is None and not boxes and gap in slid
         rates = rate, recording.rate
         yield UnseenSupport(first, last, boxes, hands, *rates, leaning=leaning, skidding=skidding)
+
+
+def _off_balance(performance: Performance, schedule: ContactSchedule) -> Iterator[OffBalance]:
+    """Where the weight is beside what touches for so long that it is no fault of the capture."""
+    recording = performance.recording
+    found = off_balance(performance, schedule, SURELY_LASTS)
+    if found:
+        yield OffBalance(
+            tuple((_frame(recording, each.start), _frame(recording, each.end)) for each in found)
+        )
 
 
 def _hands(

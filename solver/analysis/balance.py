@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray
 from ..body.dynamics import MomentFunction
-from ..data.constants import STANDARD_GRAVITY
+from ..data.constants import STANDARD_GRAVITY, UP
 from ..data.contacts import ContactSchedule, Interval
 from ..numerics.local_regression import derivative
 from ..numerics.runs import runs
@@ -16,7 +16,7 @@ from .performance import Performance, contact_points
 
 BESIDE = 0.1  # m from what touches: half a foot's breadth, and as much by which masses err
 LASTS = 0.2  # s; walks, runs and jumps have up to 0.13, a hop that lands on one foot's toes 0.3
-SURELY_LASTS = 0.5  # s; longer than these, and than what joints that tremble by 3 mm make of it
+SURELY_LASTS = 0.5  # s; longer than these, and than what joints that tremble by 9 mm make of it
 SMOOTHING = 0.06  # s, standard deviation; who leans does so for longer
 LOADED = 0.3  # body weights, upwards; a smaller force meets the ground anywhere
 _AROUND = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
@@ -75,7 +75,7 @@ def _zero_moment_point(
     speeds, turning = (derivative(take.times, take.angles, times, width, n) for n in (1, 2))
     moment = MomentFunction(character).value(performance.angles, speeds, turning)
     moment *= STANDARD_GRAVITY  # by mass, as the force is
-    force = derivative(take.times, take.com, times, width, 2) + [0.0, 0.0, character.gravity]
+    force = derivative(take.times, take.com, times, width, 2) + character.gravity * UP
     loaded = force[:, 2] > LOADED * character.gravity
     up, high = np.where(loaded, force[:, 2], np.inf), performance.com[:, 2] - ground
     ahead = -(moment[:, 1] + high * force[:, 0]) / up

@@ -41,6 +41,7 @@ class FindingKind(Enum):
     FLICKER = "flicker"
     UNSEEN_SUPPORT = "unseen support"
     SKIDDING = "skidding"
+    OFF_BALANCE = "off balance"
     BEGINS_IN_AIR = "begins in the air"
     ENDS_IN_AIR = "ends in the air"
 
@@ -54,6 +55,7 @@ _NOTES = (
     FindingKind.SLIDING_FEET,
     FindingKind.UNSEEN_SUPPORT,
     FindingKind.SKIDDING,
+    FindingKind.OFF_BALANCE,
     FindingKind.BEGINS_IN_AIR,
     FindingKind.ENDS_IN_AIR,
 )

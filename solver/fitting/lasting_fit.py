@@ -23,7 +23,7 @@ from .fit import Fit, LetGo, fit
 
 MAX_ROUNDS = 6  # then everything is let go
 WORST_SHARE = 0.5  # of the worst contact's miss: who misses more is let go with it
-FAR = 0.03  # m, rms over joint centres; further off it is doubted what carried the body
+FAR = 0.03  # m, rms over joint centres; further off it is doubted what carried it
 OFF_PARABOLA = 0.03  # m, by which the recorded centre of mass leaves the fit's parabola
 MUCH_NEARER = 0.8  # times as far: what something unseen must gain
 CONTRADICTORY = 1e-3  # m; contacts that miss by less follow what else does not hold
@@ -67,9 +67,9 @@ def lasting_fit(
             break  # nothing is left to let go of
         schedule = easier
         let_go += released
-    doubted = () if periodic or not found.solved else _doubted(found)
-    if doubted:
-        found = _nearer(found, _unseen_too(schedule, doubted), rides, progress)
+    if found.solved and not periodic:
+        for doubted in (_beside_feet, _not_flown_or_leaning):
+            found = _nearer(found, doubted(found), rides, progress)
     named = found.schedule.named_as(asked)
     carried = tuple(f for f in flights if any(_is_mostly_in(f, u) for u in named.unseen))
     return replace(found, schedule=named, let_go=tuple(let_go), carried=carried)
@@ -80,32 +80,41 @@ def _is_mostly_in(flight: Phase, unseen: Interval) -> bool:
     return both > 0.5 * (flight.end - flight.start)
 
 
-def _nearer(found: Fit, told: ContactSchedule, rides: Rides, progress: Progress | None) -> Fit:
+def _nearer(
+    found: Fit, doubted: Sequence[Interval], rides: Rides, progress: Progress | None
+) -> Fit:
     """The fit with more unseen support, where that is other than before and brings it much nearer;
     else as it is."""
+    told = _unseen_too(found.schedule, doubted)
     if told.unseen == found.schedule.unseen:
         return found
     again = fit(found.performance, told, rides=rides(told), progress=progress)
     return again if again.solved and _off(again) < MUCH_NEARER * _off(found) else found
 
 
-def _off(found: Fit) -> float:
-    """Distance of a fit from its recording, m, rms over joint centres."""
-    apart = found.motion.joint_centres(found.performance.times) - found.performance.centres
+def _off(found: Fit, start: float = 0.0, end: float = np.inf) -> float:
+    """Distance of a fit from its recording, m, rms over joint centres, from one instant, s, to
+    another."""
+    times = found.performance.times
+    within = (times >= start) & (times <= end)
+    apart = found.motion.joint_centres(times[within]) - found.performance.centres[within]
     return float(np.sqrt((apart**2).sum(axis=2).mean()))
 
 
-def _doubted(found: Fit) -> tuple[Interval, ...]:
-    """Where a fit far from its recording may lack what carried the body."""
-    if _off(found) < FAR:
-        return ()
+def _beside_feet(found: Fit) -> tuple[Interval, ...]:
+    """Where a fit is far from its recording, and the weight was recorded beside what touches."""
     performance, schedule = found.performance, found.schedule
     beside = off_balance(performance, schedule)
-    return (
-        *_never_flown(found),
-        *leaning(performance, schedule),
-        *_joined(performance, schedule, beside),
-    )
+    far = [each for each in beside if _off(found, each.start, each.end) > FAR]
+    return _joined(performance, schedule, far)
+
+
+def _not_flown_or_leaning(found: Fit) -> tuple[Interval, ...]:
+    """Of a fit far from its recording, where a flight may never have been, or more than feet may
+    have carried."""
+    if _off(found) < FAR:
+        return ()
+    return (*_never_flown(found), *leaning(found.performance, found.schedule))
 
 
 def _never_flown(found: Fit) -> tuple[Interval, ...]:

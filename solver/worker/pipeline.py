@@ -24,6 +24,7 @@ from ..data.contacts import ContactSchedule, gaps
 from ..data.faults import (
     NoFit,
     NoSolution,
+    OffBalance,
     Treadmill,
     UnseenSupport,
     computable,
@@ -237,7 +238,10 @@ def measure(recording: Recording, problem: MotionProblem) -> Subject:
         analysis, cycle = _analysed(scaled_recording(recording, factor), problem)
     except (UnseenSupport, Treadmill) as fault:
         raise _unscaled(fault, factor) from None
-    unseen = tuple(_unscaled(each, factor) for each in analysis.unseen)
+    unseen = tuple(
+        each if isinstance(each, OffBalance) else _unscaled(each, factor)
+        for each in analysis.unseen
+    )
     away = floated(made, problem, float(analysis.performance.recording.frames[-1]))
     return Subject(replace(analysis, unseen=unseen), problem, height, factor, cycle, away)
 

@@ -26,7 +26,7 @@ from .unpickling import Unreadable, is_data, unpickled
 if TYPE_CHECKING:
     from ..arrays import FloatArray
     from ..data.contacts import ContactSchedule
-    from ..data.faults import Fault, NoSolution, Treadmill, UnseenSupport
+    from ..data.faults import CarriedBy, Fault, NoSolution
     from ..data.loop import Cycle
     from ..data.problem import MotionProblem
     from ..data.recording import PoseTrack, Recording
@@ -140,7 +140,7 @@ class Analysed:
     traces: Traces
     fleshed: tuple[str, ...] = ()
     cycle: Cycle | None = None
-    unseen: tuple[UnseenSupport | Treadmill, ...] = ()
+    unseen: tuple[CarriedBy, ...] = ()
     backwards: tuple[str, ...] = ()
 
 

@@ -170,7 +170,7 @@ class Service:
         if self._subject is None:
             return ()
         subject = self._subject[1]
-        return scene if subject.analysis.unseen else _named(subject.stood_on, scene)
+        return scene if subject.schedule.unseen else _named(subject.stood_on, scene)
 
     def _fit(
         self,

@@ -13,6 +13,7 @@ from .loops import SeamStanceMoved as SeamStanceMoved
 from .recordings import BadScale as BadScale
 from .recordings import BlendedAction as BlendedAction
 from .recordings import BoneTaken as BoneTaken
+from .recordings import CarriedBy as CarriedBy
 from .recordings import ChangedMeanwhile as ChangedMeanwhile
 from .recordings import ClipNotOpened as ClipNotOpened
 from .recordings import ClipTooShort as ClipTooShort
@@ -37,6 +38,7 @@ from .recordings import NotMirrored as NotMirrored
 from .recordings import NotPutIn as NotPutIn
 from .recordings import OddHeight as OddHeight
 from .recordings import OddScale as OddScale
+from .recordings import OffBalance as OffBalance
 from .recordings import OptionNotTaken as OptionNotTaken
 from .recordings import OutsideKeys as OutsideKeys
 from .recordings import RateChanged as RateChanged

@@ -308,6 +308,14 @@ class UnseenSupports(Fault):
 
 
 @dataclass
+class OffBalance(Fault):
+    """Feet touch, but the weight is beside them in spans (first, last frame), as of who sits or
+    leans: a hint, as the fit tells what that takes."""
+
+    spans: tuple[tuple[float, float], ...]
+
+
+@dataclass
 class FitNeedsSupport(Fault):
     """No motion comes near the recording but with something unseen that carries the body, in spans
     (first, last frame), which its problem refuses."""
@@ -320,6 +328,9 @@ class Treadmill(Fault):
     """The feet slide along the floor at one steady speed, m/s, so no place holds them."""
 
     speed: float
+
+
+CarriedBy = UnseenSupport | Treadmill | OffBalance  # what is told of what carries a recording
 
 
 @dataclass

@@ -6,14 +6,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from ...data.faults import Treadmill, UnseenSupport
+from ...data.faults import CarriedBy, UnseenSupport
 from ...data.problem import Mend
 from ...data.recording import Recording
 from ..figure import figure_of
 from ..frames.exchanges import find_exchange
 from ..upright import find_up
 
-Told = Sequence[UnseenSupport | Treadmill]
+Told = Sequence[CarriedBy]
 
 
 def with_cause(told: Told, recording: Recording, chosen: Mapping[str, str]) -> Told:
@@ -29,7 +29,7 @@ def with_cause(told: Told, recording: Recording, chosen: Mapping[str, str]) -> T
     if legs is None:
         return told
 
-    def explained(each: UnseenSupport | Treadmill) -> UnseenSupport | Treadmill:
+    def explained(each: CarriedBy) -> CarriedBy:
         if isinstance(each, UnseenSupport) and legs.touches(each.first, each.last):
             return replace(each, boxes=(), rate=None, exchanged=True, skidding=False)
         return each

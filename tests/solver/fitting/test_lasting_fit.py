@@ -38,6 +38,7 @@ from hangtime.solver.worker.pipeline import (
 from hangtime.solver.worker.stage_clock import StageClock
 from hangtime.tests.helpers.clips import JUMP, load_recording
 from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, frames_of, hop
+from hangtime.tests.helpers.leaned import leaned
 
 DROP = 0.3  # m
 AROUND = 0.3  # s, of the flight
@@ -212,16 +213,24 @@ def test_a_dance_without_a_flight_is_fitted() -> None:
 @pytest.mark.slow
 def test_who_lies_on_the_floor_stays_there() -> None:
     """The toes alone touch, which hold nobody up who leans over by 80 degrees."""
-    stands = load_recording(JUMP).window(1.0, 60.0)
-    toes = [i for i, bone in enumerate(stands.bones) if "Toe" in bone.name]
-    turn = axis_rotation(0, np.radians([80.0]))[0]
-    hinge = stands.heads[0, toes].mean(axis=0) * [1.0, 1.0, 0.0]
-    heads = (stands.heads - hinge) @ turn.T + hinge
-    lies = replace(stands, heads=heads, rotations=turn @ stands.rotations)
-    fitted = fit_subject(measure(lies, MotionProblem()), StageClock())
+    fitted = fit_subject(measure(leaned(80.0), MotionProblem()), StageClock())
     assert fitted.solved
     assert fitted.schedule.contacts
     assert fit_quality(fitted).joint_centres_rms_cm < 1.0  # by its toes alone 9
+
+
+@pytest.mark.slow
+def test_who_leans_on_what_was_not_recorded_is_carried() -> None:
+    """The toes touch all the while, so there is neither a flight nor anything on the floor."""
+    subject = measure(leaned(20.0), MotionProblem())
+    assert subject.schedule.unseen == ()
+    fitted = fit_subject(subject, StageClock())
+    assert fitted.let_go == ()
+    assert len(fitted.schedule.contacts) == len(subject.schedule.contacts)
+    assert fitted.schedule.unseen
+    assert fit_quality(fitted).joint_centres_rms_cm < 1.0  # by the feet alone 4
+    with pytest.raises(FitNeedsSupport):
+        adapt_fit(subject.asked(MotionProblem(unseen=Unseen.REFUSE)), fitted, StageClock())
 
 
 def test_no_moment_of_flight_is_left_between_a_contact_and_what_carries_unseen() -> None:
