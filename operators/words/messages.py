@@ -94,7 +94,7 @@ def _variant(fault: Fault) -> int:
             return bool(fault.kept)
         case faults.UnseenSupport():
             carrying = fault.leaning, bool(fault.boxes), bool(fault.hands), fault.rate is not None
-            mistaken = fault.exchanged, fault.skidding, fault.lying
+            mistaken = fault.exchanged, fault.skidding, fault.lying, fault.resting
             return max(i for i, each in enumerate((True, *carrying, *mistaken)) if each)
         case faults.UnseenSupports():
             return fault.leaning

@@ -59,6 +59,7 @@ ROUNDING = 1e-6  # of a frame's time
 MOST = 2.0 / 3.0  # of the time in the air, in which the body falls at another rate than the scene's
 LEANING_SHARE = 0.2  # of a gap, in which hands or knees on the floor may be what carries the body
 LOW_SHARE = 0.9  # of a gap, in which a foot or hand on the floor touches all the same
+SKIDS = 0.03  # m, to either side, of a foot on the floor; one that stands rolls and turns by less
 MAX_FRAME_TIME = 0.125  # s: the flight of a small hop, a quarter second, has two frames then
 
 
@@ -148,7 +149,7 @@ def _told(
         return
     recording = performance.recording
     agreed = agreed_rate(performance, schedule)
-    slid = skids_in(performance, schedule.unseen)
+    low, slid = (each(performance, schedule.unseen) for each in (_on_floor, skids_in))
     for gap in schedule.unseen:
         first, last = _frame(recording, gap.start), _frame(recording, gap.end)
         if any(skid.start <= gap.start and gap.end <= skid.end for skid in skids):
@@ -162,9 +163,13 @@ def _told(
             hands = _hands(performance, schedule, gap)
         elif rate is None:
             boxes = boxes_beneath(performance.times, points, gap, floor_m)
-        skidding = rate is None and not boxes and gap in slid
-        rates = rate, recording.rate
-        yield UnseenSupport(first, last, boxes, hands, *rates, leaning=leaning, skidding=skidding)
+        on_floor = rate is None and not boxes and gap in low
+        yield UnseenSupport(
+            *(first, last, boxes, hands, rate, recording.rate),
+            leaning=leaning,
+            skidding=on_floor and gap in slid,
+            resting=on_floor and gap not in slid,
+        )
 
 
 def _off_balance(performance: Performance, schedule: ContactSchedule) -> Iterator[OffBalance]:
@@ -246,19 +251,36 @@ def _leans(performance: Performance, gap: Interval, floor_m: float) -> bool:
 
 
 def skids_in(performance: Performance, gaps: Sequence[Interval]) -> tuple[Interval, ...]:
-    """The gaps between contacts in which feet are on the floor, and so slide, rather than something
-    else carrying the body: a foot that swings past the floor is as low for a moment."""
+    """The gaps between contacts in which feet are on the floor and slide, rather than something
+    else carrying the body."""
+    points, floor_m = contact_points(performance)
+
+    def slides(gap: Interval) -> bool:
+        inside, ways = _inside(performance, gap), [0.0]
+        for point in points.values():
+            if point.kind is not PointKind.HAND:
+                low = point.track[:, 2] - floor_m < point.kind.value.max_height
+                places = point.track[inside & low, :2]
+                ways += np.ptp(places, axis=0).tolist() if len(places) else []
+        return max(ways) > SKIDS
+
+    return tuple(filter(slides, _on_floor(performance, gaps)))
+
+
+def _on_floor(performance: Performance, gaps: Sequence[Interval]) -> tuple[Interval, ...]:
+    """The gaps between contacts in which feet are on the floor, and no other part of the body: a
+    foot that swings past the floor is as low for a moment."""
     if not gaps:
         return ()
     points, floor_m = contact_points(performance)
     low = low_feet(points, floor_m)
 
-    def slides(gap: Interval) -> bool:
+    def on_floor(gap: Interval) -> bool:
         during = low[_inside(performance, gap)]
-        on_floor = bool(during.size and during.mean() >= LOW_SHARE)
-        return on_floor and not _leans(performance, gap, floor_m)
+        touching = bool(during.size and during.mean() >= LOW_SHARE)
+        return touching and not _leans(performance, gap, floor_m)
 
-    return tuple(filter(slides, gaps))
+    return tuple(filter(on_floor, gaps))
 
 
 def _inside(performance: Performance, gap: Interval) -> BoolArray:

@@ -194,6 +194,10 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
         "The figure lies: another axis than Z points from its feet to its head, so the body does "
         "not fall where neither foot touches the ground. Import the clip again with other axes, "
         'or turn it upright (Examine, Turn Upright; up = "…" in a recipe).',
+        "From frame {first:g} to {last:g} the feet rest on the ground, but no contact holds them, "
+        "so something unseen carries the body. Let the feet touch; where a chair or a table "
+        "carries it this may stay so, or a Point with Pushes Back on the pelvis or the hand takes "
+        "it over.",
     ),
     faults.ScaledStrip: "The body falls as gravity has it at {rate:.5g} frames a second, but the "
     "scene has {scene_rate:.5g} (frames {first:g} to {last:g}), and the NLA strip “{strip}” plays "

@@ -269,7 +269,8 @@ class UnseenSupport(Fault):
     on the floor. hands: their contacts, where that is hands. rate: frames a second at which the
     body would fall as gravity has it, where the scene's, scene_rate, is another. exchanged: whether
     the legs are there, so that none of these is meant. skidding: whether feet are on the ground,
-    and go from place to place. lying: whether another axis than Z points from the feet to the head.
+    and go from place to place. resting: whether they stay there, without a contact. lying: whether
+    another axis than Z points from the feet to the head.
     """
 
     first: float
@@ -282,6 +283,7 @@ class UnseenSupport(Fault):
     exchanged: bool = False
     skidding: bool = False
     lying: bool = False
+    resting: bool = False
 
 
 @dataclass

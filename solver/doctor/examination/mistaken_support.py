@@ -31,7 +31,7 @@ def with_cause(told: Told, recording: Recording, chosen: Mapping[str, str]) -> T
 
     def explained(each: CarriedBy) -> CarriedBy:
         if isinstance(each, UnseenSupport) and legs.touches(each.first, each.last):
-            return replace(each, boxes=(), rate=None, exchanged=True, skidding=False)
+            return replace(each, boxes=(), rate=None, exchanged=True, skidding=False, resting=False)
         return each
 
     return tuple(map(explained, told))

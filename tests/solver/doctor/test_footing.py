@@ -16,11 +16,12 @@ from hangtime.devtools.doctor.damages.whole_body import (
     swaying,
 )
 from hangtime.devtools.doctor.measure import apart
+from hangtime.operators.words.messages import sentence
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.performance import find_contacts, perform
 from hangtime.solver.body.character import build_character
 from hangtime.solver.data.faults import UnseenSupport
-from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.problem import ContactEdit, MotionProblem
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.examination.repair import repaired
@@ -237,6 +238,18 @@ def test_a_jump_in_place_is_told_without_a_remedy(name: str) -> None:
 def test_who_moves_on_one_spot_or_goes_along_the_floor_is_not_in_place(name: str) -> None:
     recording = load_recording(name)
     assert find_in_place(perform(recording, build_character(recording))) is None
+
+
+def test_feet_that_rest_without_a_contact_do_not_skid() -> None:
+    """The artist took their contacts away."""
+    first = float(jump().frames[0])
+    stands = MotionProblem(frames=(first, first + 60.0))
+    found = analyse(jump(), stands).schedule.contacts
+    without = tuple(ContactEdit(contact.name, remove=True) for contact in found)
+    (told,) = analyse(jump(), replace(stands, contacts=without)).unseen
+    assert isinstance(told, UnseenSupport)
+    assert (told.resting, told.skidding) == (True, False)
+    assert "the feet rest on the ground, but no contact holds them" in sentence(told)
 
 
 def test_feet_that_skid_while_they_stand_are_told_as_such() -> None:
