@@ -17,9 +17,8 @@ from .damages.damage import Damage
 
 # What a clip truly has, undamaged, is no false alarm: the dancer's hips rise by 0.12 m in 50 ms and
 # stop at once, which at 30 Hz is a jump; and afterwards the lowest foot stands 4 to 16 cm up, until
-# it falls to the floor as suddenly: at first 7 cm below where it stands for most of the time.
-_LEAPS = FindingKind.LEAP, FindingKind.JUMP
-OWN_FAULTS = {"rokoko_jesse_dance": (*_LEAPS, FindingKind.FLOOR, FindingKind.SINKING)}
+# it falls to the floor as suddenly.
+OWN_FAULTS = {"rokoko_jesse_dance": (FindingKind.LEAP, FindingKind.JUMP, FindingKind.FLOOR)}
 
 
 @dataclass(frozen=True)

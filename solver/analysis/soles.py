@@ -26,7 +26,6 @@ UNLIKE = 0.03  # m; feet that stand level differ by 0.026 at most in clean recor
 MAX_STANDING_SPEED = 0.25  # m/s; a foot slower than this stands
 STANDING_HEIGHT_BAND = 0.02  # m; how much the height of a standing foot varies
 MIN_STANDING_FRAMES = 4
-HARDLY_STANDS = 0.25  # of the frames in which the other foot stands; such a foot tells no floor
 LOW_SHARE = 10  # percent of a clip, at least, in which each foot of a runner is down
 TILT_TIME = 0.1  # s; a centimetre off level counts as much as 0.1 m/s when a foot stands
 FEWEST = 30  # points of skin that tell a foot's shape
@@ -93,8 +92,7 @@ class _Stance:
 
 
 def floor_height(times: FloatArray, feet: Sequence[FootTracks], stature_m: float) -> float:
-    """Floor height, m: from soles of skin, else from the lower foot's ball when it stands, of feet
-    that stand for as long as each other.
+    """Floor height, m: from soles of skin, else from the lower foot's ball when it stands.
 
     The height 0 is taken where it can be the floor, since recordings are made upon it.
     """
@@ -104,19 +102,10 @@ def floor_height(times: FloatArray, feet: Sequence[FootTracks], stature_m: float
     under = [h[0] - sole.down for h, sole in zip(heights, soles, strict=True) if sole is not None]
     if len(under) == len(feet):
         return 0.0 if abs(min(under)) <= STANDING_HEIGHT_BAND else float(min(under))
-    ankle, ball = heights[_stands(standing)].min(axis=0).tolist()
+    ankle, ball = heights.min(axis=0).tolist()
     if all(foot.has_toes for foot in feet):
         return _firm(ball - BALL_HEIGHT * stature_m - USUAL_SHOE)
     return _firm(ankle - ANKLE_HEIGHT * stature_m - USUAL_SHOE)  # their balls are tails: often lie
-
-
-def _stands(standing: Sequence[BoolArray]) -> BoolArray:
-    """(F,) whether each foot stands about as long as the other: one that hardly does tells nothing.
-
-    standing: frames (T,) in which each does.
-    """
-    frames = np.array([flat.sum() for flat in standing])
-    return np.asarray(frames > HARDLY_STANDS * frames.max())
 
 
 def _firm(height: float) -> float:
@@ -176,7 +165,7 @@ def _stances(
     """How heel and ball of each foot stand: on the floor, where a person's sole may be so thick."""
     standing = [_standing(times, foot) for foot in feet]
     found = np.array([_heights(f, flat) for f, flat in zip(feet, standing, strict=True)]) - floor_m
-    soles = _believable(feet, found, _stands(standing), stature_m)
+    soles = _believable(feet, found, stature_m)
     stances = []
     for foot, flat, seen, sole in zip(feet, standing, found, soles, strict=True):
         stands = _Stance(flat, np.full(len(times), floor_m))
@@ -189,20 +178,17 @@ def _stances(
     return stances
 
 
-def _believable(
-    feet: Sequence[FootTracks], found: FloatArray, stands: BoolArray, stature_m: float
-) -> FloatArray:
+def _believable(feet: Sequence[FootTracks], found: FloatArray, stature_m: float) -> FloatArray:
     """(F, 2) m, heights of ankles and balls over the floor when feet stand on it.
 
     found: the same in the frames in which each foot is stillest. One that is much higher than the
-    other floats then, on a box or by a fault of the capture, and has the other's sole, and so has
-    one that hardly stands. One whose ankle is further above its ball than in any shoe is on tiptoe.
-    stands: (F,) whether it does.
+    other floats then, on a box or by a fault of the capture, and has the other's sole. One whose
+    ankle is further above its ball than in any shoe is on tiptoe.
     """
     legs = np.array([[foot.leg] for foot in feet])
     raised = legs.max() - legs  # who has a shorter leg may stand on a thicker sole
-    lower = found[stands].min(axis=0)
-    soles = np.where((found - raised > lower + UNLIKE) | ~stands[:, None], lower, found)
+    lower = found.min(axis=0)
+    soles = np.where(found - raised > lower + UNLIKE, lower, found)
     steepest = (ANKLE_HEIGHT - BALL_HEIGHT) * stature_m + HEEL
     for foot, seen, sole in zip(feet, found, soles, strict=True):
         if not foot.has_toes:  # its ball is a tail, which may be anywhere
@@ -281,8 +267,7 @@ def _standing(times: FloatArray, foot: FootTracks) -> BoolArray:
     carried &= ball < np.percentile(ball, LOW_SHARE) + STANDING_HEIGHT_BAND
     if carried.sum() >= MIN_STANDING_FRAMES:
         carried &= ankle < np.percentile(ankle[carried], 20) + STANDING_HEIGHT_BAND
-        lower = np.median(ball[carried]) < np.median(ball[flat]) - 2.0 * STANDING_HEIGHT_BAND
-        if lower and carried.sum() > flat.sum():  # most of the time, and not where a body floats
+        if np.median(ball[carried]) < np.median(ball[flat]) - 2.0 * STANDING_HEIGHT_BAND:
             flat = carried
     return flat
 

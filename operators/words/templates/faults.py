@@ -215,9 +215,8 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
         "the + beside the contacts of a stance, or an [[add_contact]] in a recipe).",
     ),
     faults.OffBalance: "In frames {spans:spans} the weight is beside the feet, as of who sits or "
-    "leans (or of contacts that are missing), so something unseen carries it in the fit. To have "
-    "a chair or a wall carry it in the result, give the pelvis, or the hand that leans, a Point "
-    "with Pushes Back in these frames.",
+    "leans, so something unseen carries it in the fit. To have a chair or a wall carry it in the "
+    "result, give the pelvis, or the hand that leans, a Point with Pushes Back in these frames.",
     faults.FitNeedsSupport: "No motion comes near the recording unless something unseen carries "
     "the body in frames {spans:spans}, which the recipe refuses; correct the frames of the "
     "contacts there, add what does carry it (a contact, or an [[object]] that is ground), choose "
