@@ -77,25 +77,28 @@ def pose_of(armature: bpy.types.Object) -> bpy.types.Pose:
 def current_action(armature: bpy.types.Object) -> bpy.types.Action | None:
     """The take that animates the armature now: assigned, in a strip of its takes, or in the only
     one that there is."""
-    assigned = assigned_action(armature)
-    if assigned is not None or armature.animation_data is None:
+    assigned, data = assigned_action(armature), armature.animation_data
+    if assigned is not None or data is None or not data.use_nla:
         return assigned
-    seen = [each for each in take_strips(armature) if is_seen(*each)]
+    ours = take_strips(armature)
+    seen = [each for each in ours if is_seen(*each)]
     if seen:
-        return None if _is_covered(armature, *seen[-1]) else shown_by(seen[-1][1])
+        return None if _is_covered(data, seen[-1], ours) else shown_by(seen[-1][1])
     strip = played_strip(armature)
     return strip.action if strip is not None else None
 
 
 def _is_covered(
-    armature: bpy.types.Object, track: bpy.types.NlaTrack, strip: bpy.types.NlaStrip
+    data: bpy.types.AnimData, seen: tuple[bpy.types.NlaTrack, bpy.types.NlaStrip], ours: Strips
 ) -> bool:
     """Whether a strip of the artist's plays the same take, or another result of its recording,
-    above a strip and in its place."""
-    take = shown_by(strip)
-    every = list(present(armature.animation_data).nla_tracks)
-    ours = [each for _, each in take_strips(armature)]
-    above = ((t, s) for t in every[every.index(track) + 1 :] for s in t.strips if s not in ours)
+    above a strip that is seen and in its place. ours: the strips of takes."""
+    track, strip = seen
+    take, names = shown_by(strip), {each.name for _, each in ours}
+    every = list(data.nla_tracks)
+    above = (
+        (t, s) for t in every[every.index(track) + 1 :] for s in t.strips if s.name not in names
+    )
     return take is not None and any(
         is_seen(*each)
         and each[1].blend_type == "REPLACE"

@@ -3,7 +3,6 @@
 import bpy
 
 from ..solver.data.faults import LibraryMissing
-from .accessors import present
 
 
 def lost_character(armature: bpy.types.Object) -> LibraryMissing | None:
@@ -14,7 +13,8 @@ def lost_character(armature: bpy.types.Object) -> LibraryMissing | None:
 
 
 def lost_file(block: bpy.types.ID | None) -> LibraryMissing | None:
-    """The missing file of a data-block that is linked; None where that is there."""
-    if block is None or not block.is_missing:
+    """The missing file of a data-block that is linked; None where that is there, and of what was
+    made local, which stays marked as missing."""
+    if block is None or block.library is None or not block.is_missing:
         return None
-    return LibraryMissing(bpy.path.basename(present(block.library).filepath), block.name)
+    return LibraryMissing(bpy.path.basename(block.library.filepath), block.name)

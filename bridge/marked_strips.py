@@ -33,9 +33,9 @@ def marked_strips(data: bpy.types.AnimData, marks: str) -> Strips:
         return [each for each in flagged if played.count(each[1].action) == 1]
     names = {strip.name for _, strip in every}
     ours = {name for name, _ in kept if name in names}
-    for name, action in kept:
+    for action in (action for name, action in kept if name not in names):
         playing = [s.name for _, s in every if s.action and s.action.name_full == action]
-        if name not in names and len(playing) == 1:
+        if len(playing) == 1:
             ours.update(playing)
     return [each for each in every if each[1].name in ours]
 

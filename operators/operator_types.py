@@ -67,4 +67,4 @@ def _without_middle(text: str) -> str:
     whole, gap = text.encode(), " … "
     head = whole[: MOST_BYTES - TAIL_BYTES - len(gap.encode())].decode(errors="ignore")
     tail = whole[-TAIL_BYTES:].decode(errors="ignore")
-    return gap.join([head.rpartition(" ")[0], tail.partition(" ")[2]])
+    return gap.join([head.rpartition(" ")[0] or head, tail.partition(" ")[2] or tail])

@@ -63,7 +63,8 @@ def retimed_frames(settings: HangtimeSettings, times: TimeMap) -> dict[str, str]
 
 def _retimed(row: HangtimeConstraint, times: TimeMap) -> str:
     frames = {Span.FRAME: [row.first_frame], Span.FRAMES: [row.first_frame, row.last_frame]}
-    own = frames.get(Span[row.span], [])
+    ends = times.recorded_frame[0], times.recorded_frame[-1]
+    own = np.clip(frames.get(Span[row.span], []), *ends).tolist()
     held = np.interp(own, times.recorded_frame, times.adapted_frame).tolist()
     if all(_frame(now) == _frame(then) for now, then in zip(held, own, strict=True)):
         return ""

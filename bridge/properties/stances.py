@@ -56,9 +56,16 @@ def moving_with(
         case Moves.CONTACT:
             return [row]
         case Moves.FOOT:
-            steps = footfalls([_touch(each) for each in stance])
-            return next(foot for foot in ([stance[i] for i in s] for s in steps) if row in foot)
+            return _footfall(stance, row)
     return stance
+
+
+def _footfall(stance: Sequence[ContactRow], row: ContactRow) -> list[ContactRow]:
+    """Of a stance's contacts that count those of the step that a contact is part of."""
+    counted = [each for each in stance if each.used or each == row]
+    steps = footfalls([_touch(each) for each in counted])
+    mine = next(step for step in steps if counted.index(row) in step)
+    return [counted[i] for i in mine]
 
 
 def _steps(settings: Settings, stance: Sequence[ContactRow], row: ContactRow) -> bool:
@@ -84,7 +91,7 @@ def _touch(row: ContactRow) -> Touch:
 def get_moves(settings: Settings) -> int:
     """Place of `moves` among the choices. Files of earlier versions have `whole_stance` alone."""
     usual = Moves.AUTO if settings.whole_stance else Moves.CONTACT
-    return list(Moves).index(Moves[settings.moving] if settings.moving else usual)
+    return list(Moves).index(Moves.__members__.get(settings.moving, usual))
 
 
 def set_moves(settings: Settings, index: int) -> None:
@@ -154,14 +161,16 @@ def telling(contacts: Sequence[ContactRow]) -> list[ContactRow]:
 def join(settings: Settings, row: ContactRow, metre: float) -> None:
     """Takes a contact that is added where it was recorded to where its stance stands, and on what
     the nearest one of that does: with the whole stance's move, else, where contacts were moved one
-    by one, with the nearest one's. metre: in Blender units."""
+    by one, with the nearest one's of its own step, where that has others. metre: in Blender
+    units."""
     others = [each for each in stance_contacts(settings, row.phase) if each != row]
     found = telling(others)
     stance = settings.stances.get(row.phase)
     if stance is None or not found:
         return
     recorded = Vector(row.found_at)
-    nearest = min(found, key=lambda each: (Vector(each.found_at) - recorded).length)
+    own = [each for each in _footfall([*found, row], row) if each != row]
+    nearest = min(own or found, key=lambda each: (Vector(each.found_at) - recorded).length)
     old, new = (_middle([getattr(each, at) for each in found]) for at in ("found_at", "at"))
     turn = Matrix.Rotation(stance.turned, 3, "Z")
     apart = (new + turn @ (Vector(each.found_at) - old) - Vector(each.at) for each in found)

@@ -154,16 +154,20 @@ class Touch:
 def footfalls(touches: Sequence[Touch]) -> tuple[tuple[int, ...], ...]:
     """Indices of touches, those of each limb together that share some time with each other or with
     one between them: from where a foot comes down to where it leaves; by their starts."""
-    found: list[tuple[str, float, list[int]]] = []  # with the limb, and until when
+    found: list[list[int]] = []
+
+    def goes_on(mine: Sequence[int], touch: Touch) -> bool:
+        until = max(touches[i].end for i in mine)
+        rolls = until == touch.start and all(touches[i].point != touch.point for i in mine)
+        return touches[mine[0]].limb == touch.limb and (until > touch.start or rolls)
+
     for i in sorted(range(len(touches)), key=lambda i: touches[i].start):
-        touch = touches[i]
-        at = next((k for k, f in enumerate(found) if f[0] == touch.limb and f[1] > touch.start), -1)
-        if at < 0:
-            found.append((touch.limb, touch.end, [i]))
+        mine = next((step for step in found if goes_on(step, touches[i])), None)
+        if mine is None:
+            found.append([i])
         else:
-            limb, until, mine = found[at]
-            found[at] = limb, max(until, touch.end), [*mine, i]
-    return tuple(tuple(mine) for _, _, mine in found)
+            mine.append(i)
+    return tuple(map(tuple, found))
 
 
 def takes_steps(touches: Sequence[Touch]) -> bool:

@@ -86,6 +86,16 @@ def test_a_character_whose_file_is_missing_is_named_with_it(asked: str, tmp_path
         getattr(bpy.ops.hangtime, asked)()
 
 
+def test_a_missing_take_that_is_made_local_is_told_as_any_without_keys(tmp_path: Path) -> None:
+    """Blender keeps it marked as missing."""
+    armature = reopened_without(linked_take, tmp_path)
+    lost = current_action(armature).hangtime.recording
+    lost.make_local()
+    assert lost.is_missing
+    with pytest.raises(RuntimeError, match="has no keyframes"):
+        bpy.ops.hangtime.analyze()
+
+
 @pytest.mark.parametrize("asked", ["analyze", "examine", "adapt", "show_recording", "compare"])
 def test_a_recording_whose_file_is_missing_is_named_with_it(asked: str, tmp_path: Path) -> None:
     armature = reopened_without(linked_take, tmp_path)

@@ -74,6 +74,14 @@ def test_with_its_strip_muted_the_take_is_there_to_the_bit(armature: bpy.types.O
     assert recorded_action(armature) == take
 
 
+def test_where_the_nla_is_switched_off_no_strip_is_shown(armature: bpy.types.Object) -> None:
+    take, result = current_action(armature), lifted(armature, 0.1)
+    armature.animation_data.use_nla = False
+    assert current_action(armature) is None
+    armature.animation_data.use_nla = True
+    assert current_action(armature) == result != take
+
+
 def test_the_strip_shows_the_result_as_its_action_does(armature: bpy.types.Object) -> None:
     result = lifted(armature, 0.1)
     in_strip = sample(armature, FRAMES)

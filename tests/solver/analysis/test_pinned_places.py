@@ -13,7 +13,7 @@ from hangtime.solver.analysis.pinned_places import (
     travel_axes,
 )
 from hangtime.solver.arrays import FloatArray
-from hangtime.solver.data.contacts import Contact, ContactSchedule, numbered
+from hangtime.solver.data.contacts import Contact, ContactSchedule, Touch, footfalls, numbered
 from hangtime.solver.data.faults import (
     BeyondPrecision,
     ContradictoryPins,
@@ -157,6 +157,16 @@ def test_one_footfall_is_chosen_by_any_of_its_contacts() -> None:
     with pytest.raises(UnknownContact) as caught:
         chosen_contacts(Pin("step", "ground 1", step="Left heel 3"), phase, walk)
     assert "Left heel 2" in caught.value.known
+
+
+def test_a_footfall_is_what_of_a_foot_touches_at_once_or_rolls_on() -> None:
+    heel, toe = "Left heel", "Left toe"
+    rolls = [Touch(heel, 10.0, 14.0), Touch(toe, 14.0, 20.0), Touch("Right toe", 12.0, 30.0)]
+    assert footfalls(rolls) == ((0, 1), (2,))
+    slides = [Touch(toe, 10.0, 14.0), Touch(toe, 14.0, 20.0)]  # to another place
+    assert footfalls(slides) == ((0,), (1,))
+    again = [Touch(heel, 10.0, 14.0), Touch(toe, 12.0, 20.0), Touch(heel, 25.0, 30.0)]
+    assert footfalls(again) == ((0, 1), (2,))
 
 
 def test_unknown_phases_are_named_with_those_there_are() -> None:
