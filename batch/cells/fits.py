@@ -19,6 +19,7 @@ from ...solver.worker.pipeline import FITTING, Subject, fit_subject, unfitted
 from ...solver.worker.possible import check_requested
 from ...solver.worker.recent_fits import RecentFits
 from ...solver.worker.stage_clock import StageClock
+from ...solver.worker.stated_scale import own_lengths
 from ...solver.worker.unpickling import Unreadable, unpickled
 from ..records.aside import written_aside
 from ..records.locks import held
@@ -58,7 +59,8 @@ class SharedFits:
         key = fit_key(subject)
         if self._unfitted is None or self._unfitted[0] != key:
             self._unfitted = key, unfitted(subject)
-        check_requested(self._unfitted[1], subject.problem)
+        with own_lengths(subject.factor):
+            check_requested(self._unfitted[1], subject.problem)
         return self._fit(key, subject, clock)
 
     def fit(self, subject: Subject, clock: StageClock) -> Fit:

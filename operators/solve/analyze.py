@@ -31,6 +31,7 @@ from ...solver.data.faults import (
     LostEdits,
     MissingPart,
     OddHeight,
+    OffBalance,
     OutsideKeys,
     SourceOutsideKeys,
     UnseenSupport,
@@ -205,7 +206,7 @@ def analysis(
         answer = yield from _analysed(armature, recording, problem)
     contacts, flights = len(answer.schedule.contacts), len(answer.schedule.flights)
     odd = None if problem.height is not None else _odd_height(armature.name, answer.height)
-    if odd is not None and (answer.unseen or not flights):
+    if odd is not None and (_is_carried(answer) or not flights):
         raise odd
     unseen = [each for each in answer.unseen if isinstance(each, UnseenSupport)]
     for each in unseen:
@@ -315,6 +316,11 @@ def _snapped(settings: HangtimeSettings, asked: tuple[float, float]) -> str:
     )
 
 
+def _is_carried(answer: Analysed) -> bool:
+    """Whether something that is not seen carries the body, or a floor that moves."""
+    return any(not isinstance(each, OffBalance) for each in answer.unseen)
+
+
 def _analysed(
     armature: bpy.types.Object, recording: Recording, problem: MotionProblem
 ) -> Generator[PendingRequest | float | None, None, Analysed]:
@@ -324,7 +330,7 @@ def _analysed(
     Raises any Fault of an analysis, and of reading the scene.
     """
     found = yield from answered(_ask(recording, problem), Analysed)
-    if not found.unseen:
+    if not _is_carried(found):
         return found
     scene = yield from read_surfaces(armature, recording.frames)
     if not any(thing.role is SceneRole.GROUND for thing in scene.objects):

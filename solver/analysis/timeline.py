@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from ..arrays import FloatArray
-from ..data.contacts import ContactSchedule, Interval, Phase, is_phase_name
+from ..data.contacts import ContactSchedule, Interval, Phase, is_phase_name, numbers_of
 from ..data.faults import (
     BadTiming,
     BesideFrames,
@@ -158,7 +158,14 @@ class Timeline:
                 moved.append(replace(contact, start=start, end=end))
         spans = [(float(self.to_new(u.start)), float(self.to_new(u.end))) for u in schedule.unseen]
         unseen = tuple(Interval(start, end) for start, end in spans if end > start)
-        return replace(schedule, contacts=tuple(moved), duration=self.duration, unseen=unseen)
+        left = (phase for phase in schedule.phases if phase.start < self.old[-1] - 1e-9)
+        return replace(
+            schedule,
+            contacts=tuple(moved),
+            duration=self.duration,
+            unseen=unseen,
+            numbers=numbers_of(left),
+        )
 
 
 def timeline(

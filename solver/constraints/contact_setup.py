@@ -16,7 +16,8 @@ from .point_constraints import path_instants, path_places, point_axes, point_pla
 
 
 def without_lifted(schedule: ContactSchedule, problem: MotionProblem) -> ContactSchedule:
-    """The schedule without lifted contacts. Raises UnknownPhaseIn, NothingTouches."""
+    """The schedule without lifted contacts; phases keep their names. Raises UnknownPhaseIn,
+    NothingTouches."""
     kept = schedule.contacts
     for lift in problem.requests.lifts:
         phase = next((p for p in schedule.phases if p.name == lift.phase), None)
@@ -31,7 +32,7 @@ def without_lifted(schedule: ContactSchedule, problem: MotionProblem) -> Contact
         if not lifted:
             raise NothingTouches(lift.name, lift.touching)
         kept = tuple(c for c in kept if c.name not in lifted)
-    return replace(schedule, contacts=kept)
+    return replace(schedule, contacts=kept).named_as(schedule)
 
 
 def added_contact(request: PointRequest, context: EvaluationContext) -> Contact:
@@ -55,9 +56,9 @@ def added_contact(request: PointRequest, context: EvaluationContext) -> Contact:
 
 
 def with_added(schedule: ContactSchedule, added: Sequence[Contact]) -> ContactSchedule:
-    """The schedule with contacts added, in order of start."""
+    """The schedule with contacts added, in order of start; phases keep their names."""
     contacts = sorted([*schedule.contacts, *added], key=lambda c: (c.start, c.point))
-    return replace(schedule, contacts=tuple(contacts))
+    return replace(schedule, contacts=tuple(contacts)).named_as(schedule)
 
 
 def detailed_contact(

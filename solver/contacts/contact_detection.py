@@ -236,14 +236,15 @@ def _without_pauses(
     candidates: Sequence[_Candidate], thresholds: ContactThresholds, movement: PointMovement
 ) -> list[_Candidate]:
     """Candidates but for moments at which a foot that comes down pauses in the air: shorter than
-    any contact, just before one, higher than from where a foot lands, and left fast again, as by
-    none that carries."""
+    any contact, just before a rest that is none, higher than from where a foot lands, and left fast
+    again, as by none that carries."""
     heights, speeds = movement.track[:, 2], np.linalg.norm(movement.velocity[:, :2], axis=1)
     ordered = sorted(candidates, key=lambda c: c.start)
 
     def pauses(candidate: _Candidate, following: _Candidate) -> bool:
-        short = (candidate.last - candidate.first) * STEP < thresholds.min_duration
-        if not short or candidate.end + MIN_SEPARATION < following.start:
+        lasts = [(each.last - each.first) * STEP for each in (candidate, following)]
+        rests = lasts[0] < thresholds.min_duration <= lasts[1]
+        if not rests or candidate.end + MIN_SEPARATION < following.start:
             return False
         height = heights[candidate.first] - heights[following.first : following.last + 1].min()
         left = speeds[candidate.last : following.first].max(initial=0.0)

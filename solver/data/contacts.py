@@ -237,15 +237,15 @@ class ContactSchedule:
 
     unseen: intervals without a contact in which the body does not fall, so something that the
     recording does not show carries it (a box, a rail, a drifting floor): they are not flights.
-    numbers: of its phases in order, as the schedule that it was made of has them; where there are
-    fewer or more phases than these, and without any, each kind is counted on from the first.
+    numbers: of its phases in order, as the schedule that it was made of has them; where its phases
+    are others, and without any, each kind is counted on from the first.
     """
 
     contacts: tuple[Contact, ...]
     duration: float
     floor_m: float
     unseen: tuple[Interval, ...] = ()
-    numbers: tuple[int, ...] = ()
+    numbers: tuple[tuple[PhaseKind, int], ...] = ()
 
     @property
     def bones(self) -> tuple[str, ...]:
@@ -274,19 +274,22 @@ class ContactSchedule:
 
     def _numbers(self, kinds: Sequence[PhaseKind]) -> Sequence[int]:
         """Of phases of these kinds, in order."""
-        if len(self.numbers) == len(kinds):
-            return self.numbers
-        first = dict(reversed(list(zip(kinds, self.numbers, strict=False))))
+        if [kind for kind, _ in self.numbers] == kinds:
+            return [number for _, number in self.numbers]
+        first = dict(reversed(self.numbers))
         counts = {kind: count(first.get(kind, 1)) for kind in PhaseKind}
         return [next(counts[kind]) for kind in kinds]
 
     def named_as(self, other: "ContactSchedule") -> "ContactSchedule":
         """The schedule, each of its phases with the name of the first one of another schedule, on
-        the same time, that it has a part in; all are counted anew where two would have the same."""
+        the same time, that it has a part in; counted on where two would have the same."""
         phases, known = self.phases, other.phases
         shared = [next((k for k in known if k.overlaps(phase)), phase) for phase in phases]
         distinct = len({phase.name for phase in shared}) == len(phases)
-        return replace(self, numbers=tuple(p.number for p in shared) if distinct else ())
+        if distinct:
+            return replace(self, numbers=numbers_of(shared))
+        first = dict(reversed(numbers_of(known)))
+        return replace(self, numbers=tuple(first.items()))
 
     @property
     def stances(self) -> tuple[Phase, ...]:
@@ -332,7 +335,7 @@ class ContactSchedule:
             contacts=tuple(sorted(contacts, key=lambda c: (c.start, c.point))),
             duration=end - start,
             unseen=tuple(u for u in unseen if u.end > u.start),
-            numbers=tuple(p.number for p in self.phases if p.start < end and p.end > start),
+            numbers=numbers_of(p for p in self.phases if p.start < end and p.end > start),
         )
 
     def of_phase(self, phase: Phase) -> tuple[Contact, ...]:
@@ -343,6 +346,11 @@ class ContactSchedule:
         """The ground phase in which a contact begins."""
         ground = (phase for phase in self.phases if phase.kind is PhaseKind.GROUND)
         return next(p for p in ground if contact.start < p.end and contact.end > p.start)
+
+
+def numbers_of(phases: Iterable[Phase]) -> tuple[tuple[PhaseKind, int], ...]:
+    """Kind and number of each phase."""
+    return tuple((phase.kind, phase.number) for phase in phases)
 
 
 def gaps(covered: Iterable[tuple[float, float]], duration: float) -> tuple[Interval, ...]:

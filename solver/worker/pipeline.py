@@ -72,6 +72,7 @@ from .edited_part import edited_part
 from .other_phases import on_phases_of
 from .possible import check_requested, stand_in
 from .stage_clock import StageClock
+from .stated_scale import own_lengths
 
 APART, LEAST_SOUND = 0.1, 0.5  # s: about what cannot be held; of a part that is worth keeping
 FITTING, ADAPTING = "Fitting the physics", "Adapting"
@@ -321,7 +322,8 @@ def unfitted(subject: Subject) -> Fit:
 
 def fit_possible(subject: Subject, clock: StageClock) -> Fit:
     """The fit, once nothing that is asked is seen to be impossible. Raises as `check_requested`."""
-    check_requested(unfitted(subject), subject.problem)
+    with own_lengths(subject.factor):
+        check_requested(unfitted(subject), subject.problem)
     return fit_subject(subject, clock)
 
 

@@ -19,10 +19,11 @@ from hangtime.devtools.doctor.damages.poses import (
 from hangtime.devtools.doctor.damages.whole_body import joined, lain, leapt, raised
 from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.body.anatomy import Part
-from hangtime.solver.data.faults import UnseenSupport
+from hangtime.solver.data.faults import OffBalance, UnseenSupport
 from hangtime.solver.data.problem import Mend, MotionProblem
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.examination.diagnose import diagnose
+from hangtime.solver.doctor.examination.mistaken_support import with_cause
 from hangtime.solver.doctor.examination.repair import repaired
 from hangtime.solver.doctor.figure import figure_of
 from hangtime.solver.doctor.finding import FindingKind
@@ -240,3 +241,13 @@ def test_who_hangs_by_the_feet_and_swings_is_upside_down_in_truth() -> None:
     hanging = turned_about_the_toes(swings)
     lifted = hanging.heads + np.array([0.0, 0.0, 2.2])
     assert find_up(replace(hanging, heads=lifted), figure()) is None
+
+
+def test_a_figure_that_lies_is_told_so_not_that_it_sits() -> None:
+    lying = lain(UpAxis.Y).of(jump()).recording
+    sits = OffBalance(((10.0, 80.0), (120.0, 200.0)))
+    (told,) = with_cause((sits,), lying, {})
+    assert isinstance(told, UnseenSupport)
+    assert told.lying
+    assert (told.first, told.last) == (10.0, 200.0)
+    assert with_cause((sits,), jump(), {}) == (sits,)

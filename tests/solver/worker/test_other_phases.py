@@ -5,11 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hangtime.operators.words.messages import sentence
+from hangtime.solver.analysis.timeline import timeline
+from hangtime.solver.constraints.contact_setup import without_lifted
 from hangtime.solver.data.contacts import ContactSchedule, Interval
 from hangtime.solver.data.faults import JoinedPhase, NothingTouches, PinLetGo, UnknownPhaseIn
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.recording import Recording
-from hangtime.solver.data.requests import AngleLimit, Lift, PhaseTiming, Requests, When
+from hangtime.solver.data.requests import AngleLimit, Hold, Lift, PhaseTiming, Requests, When
 from hangtime.solver.worker.other_phases import on_phases_of
 from hangtime.tests.helpers.clips import JUMP, load_recording
 from hangtime.tests.helpers.fitted_hop import hop
@@ -46,10 +48,22 @@ def test_they_keep_them_also_where_the_schedule_is_cut() -> None:
     assert phase_names(found().part(1.0, 2.0)) == ["ground 2", "flight 2", "ground 3"]
 
 
-def test_where_a_phase_is_divided_all_are_counted_anew() -> None:
+def test_they_keep_them_where_the_motion_is_held_at_its_end_and_where_contacts_are_lifted() -> None:
+    holds = (Hold("End", 1.7 * recording().rate, 0.5, ends=True),)
+    held = timeline(doubted(), 0.0, recording().rate, (), holds).schedule(doubted())
+    assert phase_names(held) == ["ground 1", "flight 2", "ground 3"]
+    lifts = Requests(lifts=(Lift("Up", "ground 2"),))
+    lifted = without_lifted(found(), MotionProblem(requests=lifts))
+    assert phase_names(lifted) == ["ground 1", "flight 1", "ground 3"]
+
+
+def test_where_a_phase_is_divided_all_are_counted_on() -> None:
     whole, divided = found(), replace(found(), contacts=found().contacts[::2])
     assert phase_names(whole.named_as(divided)) == phase_names(whole)
     assert phase_names(divided.named_as(whole)) == ["ground 1", "flight 1", "ground 3"]
+    late = whole.part(1.0, 2.0)
+    carried = replace(late, unseen=(Interval(0.4, 0.5),)).named_as(late)  # amid its flight
+    assert phase_names(carried) == ["ground 2", "flight 2", "ground 3", "flight 3", "ground 4"]
 
 
 def name(number: int) -> str:
