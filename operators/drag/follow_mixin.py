@@ -1,5 +1,6 @@
 """Modal drag of contacts and points: the motion follows as a ghost; letting go adapts."""
 
+from contextlib import suppress
 from functools import partial
 
 import bpy
@@ -115,6 +116,7 @@ class FollowedDrag(PolledOperator):
             result = self._react(context, event)
             goes_on = True
         except ReferenceError:  # a script took the armature away from under us
+            live().clear()
             return self.refuse(TAKEN_AWAY)
         finally:
             if not goes_on:  # also after a mistake of ours, or every button stayed grey
@@ -143,8 +145,15 @@ class FollowedDrag(PolledOperator):
         return {"RUNNING_MODAL"}
 
     def cancel(self, _context: bpy.types.Context) -> None:
-        """Blender calls this when it opens another file, closes the window or quits meanwhile."""
-        self.leave()
+        """Blender calls this when it opens another file, closes the window or quits meanwhile: all
+        is as before the drag, which nobody can adapt any more."""
+        if self in session().running:
+            try:
+                with suppress(ReferenceError):  # the armature is gone, with all that has moved
+                    self.put_back()
+            finally:
+                self.leave()
+                live().clear()
 
     def leave(self) -> None:
         """Nothing of the drag remains but where things are."""

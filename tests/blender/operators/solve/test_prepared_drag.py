@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import count
+from types import SimpleNamespace
 
 import pytest
 
@@ -18,10 +19,14 @@ from hangtime.operators.drag import follow_mixin
 from hangtime.operators.drag.follow_mixin import FollowedDrag
 from hangtime.operators.drag.mouse import Press
 from hangtime.operators.solve.analyze import _prepare_drag
+from hangtime.operators.solve.live import live
 from hangtime.operators.solve.session import session
 from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.status import DragStatus
+from hangtime.solver.worker.protocol import Followed
 from hangtime.tests.blender.helpers.jump_scene import ask_by_text
 from hangtime.tests.helpers.clips import JUMP_FRAMES
+from mathutils import Vector
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 
@@ -68,6 +73,24 @@ class Drag(FollowedDrag):
     def __init__(self, armature: bpy.types.Object) -> None:
         self._armature = armature
         self._press = Press((0.0, 0.0), slack=3.0, dragging=False)
+        self.refused: list[str] = []
+
+    def begin(self) -> None:
+        """The contact is dragged away, and the ghost shows."""
+        row = self._armature.hangtime.contacts[self.held]
+        self._was, row.at = Vector(row.at), Vector(row.at) + Vector((1.0, 0.0, 0.0))
+        session().running.append(self)
+        live().show(self._armature.name, Followed(0, None, None, DragStatus.CONVERGED))
+
+    def put_back(self) -> None:
+        self._armature.hangtime.contacts[self.held].at = self._was
+
+    def leave(self) -> None:
+        session().running.remove(self)
+
+    def refuse(self, why: str, *_kind: str) -> set[str]:
+        self.refused.append(why)
+        return {"CANCELLED"}
 
 
 def test_a_contact_that_is_held_is_pinned_where_it_was_found(analysed) -> None:
@@ -166,3 +189,32 @@ def test_what_is_asked_of_an_aimed_head_is_refused_as_the_drag_begins(
     assert told is not None
     assert (told.text, told.uid) == (drag._fault, analysed.session_uid), "the panel tells it, too"
     assert len(asked.problems) == 2, "the worker follows nothing that Adapt would refuse"
+
+
+def test_a_drag_that_blender_ends_leaves_neither_a_move_nor_a_ghost(analysed) -> None:
+    row, drag = analysed.hangtime.contacts["Left toe 2"], Drag(analysed)
+    was = Vector(row.at)
+    drag.begin()
+    assert tuple(row.at) != tuple(was)
+    drag.cancel(bpy.context)
+    assert tuple(row.at) == tuple(was)
+    assert live().seen is None
+    assert not session().running
+    row.at = was + Vector((0.0, 1.0, 0.0))
+    drag.cancel(bpy.context)
+    assert tuple(row.at) != tuple(was), "a drag that has ended moves nothing any more"
+
+
+@pytest.mark.parametrize("ends", ["modal", "cancel"])
+def test_a_drag_whose_armature_is_gone_leaves_no_ghost(analysed, ends: str) -> None:
+    drag = Drag(analysed)
+    drag.begin()
+    bpy.data.objects.remove(analysed)
+    if ends == "modal":
+        event = SimpleNamespace(type="ESC", value="PRESS")
+        drag.modal(SimpleNamespace(region_data=True), event)
+    else:
+        drag.cancel(bpy.context)
+    assert drag.refused == [follow_mixin.TAKEN_AWAY] * (ends == "modal")
+    assert live().seen is None
+    assert not session().running
