@@ -110,6 +110,34 @@ def test_what_the_artist_set_back_is_not_lengthened_again(end: int) -> None:
 
 
 @pytest.mark.usefixtures("_figures")
+def test_it_is_lengthened_again_once_nothing_is_left_of_what_was_set_back() -> None:
+    make("A", 60)
+    bpy.context.scene.frame_end = END
+    assert not make("A", 61)
+    discard("A", 60)
+    assert not make("A", 62), "what is left was set back, too"
+    for last in (61, 62):
+        discard("A", last)
+    assert make("A", 60)
+    assert bpy.context.scene.frame_end == 60
+    discard("A", 60)
+    assert bpy.context.scene.frame_end == END
+
+
+@pytest.mark.usefixtures("_figures")
+@pytest.mark.parametrize("other", ["armature", "clip"])
+def test_what_was_set_back_for_one_is_lengthened_for_another(other: str) -> None:
+    make("A", 60)
+    bpy.context.scene.frame_end = 58
+    armature = bpy.data.objects["A"] if other == "clip" else rigs.make_armature(name="C")
+    if other == "clip":
+        armature.animation_data_clear()
+    rigs.animate(armature, frames=(1, 58))
+    assert make(armature.name, 80)
+    assert bpy.context.scene.frame_end == 80
+
+
+@pytest.mark.usefixtures("_figures")
 def test_a_scene_that_is_made_shorter_for_another_clip_is_lengthened_again() -> None:
     make("A", 60)
     bpy.context.scene.frame_end = 40
