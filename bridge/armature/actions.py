@@ -18,7 +18,7 @@ from .incremental import Incremental, complete, sample_incrementally
 from .played import adopt_strip, playing_strip
 from .poses import Poses, sample
 from .read import recording_of, whole_frames
-from .strips import show_strip, strips_of, without_strips
+from .strips import reach_as_strip, show_strip, strips_of, without_strips
 
 
 def recorded_action(armature: bpy.types.Object) -> bpy.types.Action | None:
@@ -85,6 +85,7 @@ def show(
         show_strip(armature, action)
     elif action == assigned_action(armature) or action != shown:
         fcurves.assign(armature, action, slot)
+    reach_as_strip(armature)
     _evaluate()
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Literal, TypeAlias
 
 import bpy
 import numpy as np
@@ -14,19 +15,24 @@ import numpy as np
 from ..accessors import (
     BESIDE,
     SHOWS,
+    assigned_action,
+    attached,
     current_action,
     mark_strips,
     present,
     root_of,
     shown_by,
+    source_of,
     take_strips,
 )
-from ..action_slots import all_curves, span_of
+from ..action_slots import all_curves, home_of, span_of
 from ..marked_strips import Strips, set_seen
 from ..unkeyed import put_back
 from . import fcurves
 
 _SAME = 1e-3  # frames
+
+Extrapolation: TypeAlias = Literal["NOTHING", "HOLD", "HOLD_FORWARD"]
 
 
 def strips_of(owner: bpy.types.Object, action: bpy.types.Action) -> Strips:
@@ -86,21 +92,56 @@ def _reach(strip: bpy.types.NlaStrip, below: bpy.types.NlaStrip) -> None:
     strip.extrapolation = below.extrapolation
 
 
-def reach_as_strip(
-    owner: bpy.types.Object, take: bpy.types.Action, result: bpy.types.Action, *, in_slot: bool
+def reach_as_strip(owner: bpy.types.Object) -> None:
+    """Let a result that is assigned show as far beyond its ends as the strip of its take, where it
+    has one and can. Else assigned actions do that as the artist has set it, which is kept till
+    then."""
+    data, settings, result = owner.animation_data, attached(owner), assigned_action(owner)
+    if data is None:
+        return
+    reach = _reach_of(owner, result) if result is not None else None
+    if reach is not None:
+        settings.own_extrapolation = settings.own_extrapolation or data.action_extrapolation
+        data.action_extrapolation = reach
+    elif settings.own_extrapolation:
+        data.action_extrapolation = settings.own_extrapolation
+        settings.own_extrapolation = ""
+
+
+def hidden_beyond(
+    owner: bpy.types.Object, result: bpy.types.Action, *, in_slot: bool
 ) -> str | None:
-    """Let a result that is assigned show as far beyond its ends as its take's strip, where it has
-    one. Returns its name where the result cannot, and hides others: it ends before the strip, of
-    which the rest would be seen, or will be a slot, whose ends are its whole action's to Blender.
-    """
-    playing = strips_of(owner, take)
-    if not playing:
+    """Name of the strip of a result's take where the result, assigned, cannot show as far beyond
+    its ends, and hides others. in_slot: whether it will be a slot."""
+    below = _strip_below(owner, result)
+    if below is None or (not in_slot and _reach_of(owner, result) == below.extrapolation):
         return None
-    data, below = present(owner.animation_data), playing[0][1]
+    return below.name if below.extrapolation != "HOLD" else None
+
+
+def _reach_of(owner: bpy.types.Object, result: bpy.types.Action) -> Extrapolation | None:
+    """The extrapolation of its take's strip for a result that is assigned; None without a strip.
+
+    It is held where it ends before the strip, of which the rest would be seen, and where it is a
+    slot, whose ends are its whole action's to Blender.
+    """
+    below = _strip_below(owner, result)
+    if below is None:
+        return None
     first, last = span_of(result)
     reaches = first < below.frame_start + _SAME and last > below.frame_end - _SAME
-    data.action_extrapolation = below.extrapolation if reaches and not in_slot else "HOLD"
-    return None if data.action_extrapolation == below.extrapolation else below.name
+    return below.extrapolation if reaches and home_of(result) is None else "HOLD"
+
+
+def _strip_below(owner: bpy.types.Object, result: bpy.types.Action) -> bpy.types.NlaStrip | None:
+    """The strip of what a result was made from, or of the next take before that has one."""
+    take = source_of(result)
+    while take is not None:
+        playing = strips_of(owner, take)
+        if playing:
+            return playing[0][1]
+        take = source_of(take)
+    return None
 
 
 def _span(strip: bpy.types.NlaStrip, start: float, end: float) -> None:

@@ -288,6 +288,7 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     adapted: hidden(target(type=bpy.types.Action))
     source: hidden(target(type=bpy.types.Action))  # a result to start from; none: the recording
     take_strips: hidden(text())  # JSON: the armature's, see marked_strips.py
+    own_extrapolation: hidden(text())  # the artist's, of assigned actions, while a result has its
     status: hidden(text())
 
 

@@ -10,7 +10,7 @@ from ...bridge.accessors import current_scene, present, root_of, source_of
 from ...bridge.armature.actions import read_recorded_incrementally, recorded_action
 from ...bridge.armature.incremental import Incremental, complete
 from ...bridge.armature.poses import frames_per_second, require_unstretched
-from ...bridge.armature.strips import layers_above, reach_as_strip
+from ...bridge.armature.strips import hidden_beyond, layers_above
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
 from ...bridge.constraints.standing import missed_contacts
@@ -221,9 +221,8 @@ def _layers_lines(
 ) -> list[str]:
     """Which of the artist's strips acted on what a result was made from, and do not on it, and
     whether it hides others of the shot."""
-    take = present(source_of(action))
-    layers = layers_above(armature, take)
-    hiding = reach_as_strip(armature, take, action, in_slot=in_slot)
+    layers = layers_above(armature, present(source_of(action)))
+    hiding = hidden_beyond(armature, action, in_slot=in_slot)
     lines = [LAYERS_HIDDEN.format(", ".join(layers))] if layers else []
     return lines if hiding is None else [*lines, OTHERS_HIDDEN.format(hiding)]
 

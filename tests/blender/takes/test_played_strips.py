@@ -17,7 +17,7 @@ from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.keys_digest import keys_digest
 from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.armature.read import read_recording
-from hangtime.bridge.armature.strips import layers_above, reach_as_strip
+from hangtime.bridge.armature.strips import hidden_beyond, layers_above
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.rows.choices import After, WrittenAs
 from hangtime.bridge.takes.plan import AdaptedMotion
@@ -321,7 +321,7 @@ def test_a_result_shows_as_far_beyond_its_ends_as_the_strip_of_its_take(
 ) -> None:
     armature = played()
     with_walk(armature)
-    take, walk = current_action(armature), armature.animation_data.nla_tracks[-1]
+    walk = armature.animation_data.nla_tracks[-1]
     beyond, inside = np.r_[-90.0:39.0, 130.0:140.0], np.arange(50.0, 61.0)
     recorded = heights(armature, inside)
     walk.mute = False
@@ -331,12 +331,39 @@ def test_a_result_shows_as_far_beyond_its_ends_as_the_strip_of_its_take(
     result = adapt(armature, 50.0, 60.0, written_as=written_as, after=after)
     hiding = None
     if written_as is WrittenAs.ACTION:
-        hiding = reach_as_strip(armature, take, result, in_slot=False)
+        hiding = hidden_beyond(armature, result, in_slot=False)
     walk.mute = False
     np.testing.assert_allclose(heights(armature, inside) - recorded, 0.1, atol=1e-5)
     assert (hiding == "Take") is (cut and written_as is WrittenAs.ACTION)
     if hiding is None:
         np.testing.assert_array_equal(heights(armature, beyond), before)
+
+
+def test_a_result_shows_as_far_beyond_its_ends_whatever_was_shown_meanwhile() -> None:
+    armature = played()
+    with_walk(armature)
+    take, data = current_action(armature), armature.animation_data
+    data.action_extrapolation = "HOLD_FORWARD"
+    whole, cut = (adapt(armature, 50.0, 60.0, after=each) for each in (After.CARRY, After.CUT))
+    later = continued(armature, whole)
+    asked = [(whole, "NOTHING"), (cut, "HOLD"), (later, "NOTHING"), (take, "HOLD_FORWARD")]
+    for result, extrapolation in (*asked, asked[1], asked[3]):
+        show(armature, result)
+        assert (current_action(armature), data.action_extrapolation) == (result, extrapolation)
+    data.action_extrapolation = "HOLD"  # by the artist
+    for result, extrapolation in ((whole, "NOTHING"), (take, "HOLD")):
+        show(armature, result)
+        assert data.action_extrapolation == extrapolation
+
+
+def continued(armature: bpy.types.Object, result: bpy.types.Action) -> bpy.types.Action:
+    """A result that is made from another one."""
+    armature.hangtime.source = result
+    show(armature, result)
+    made = adapt(armature, 70.0, 80.0)
+    armature.hangtime.source = None
+    assert source_of(made) == result
+    return made
 
 
 @pytest.mark.parametrize("other", [True, False])
