@@ -6,7 +6,7 @@ The solver's metres and seconds become Blender's units and scene frames here, an
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import isfinite
 from typing import Any
@@ -18,7 +18,7 @@ from ...solver.data.contacts import Contact, ContactSchedule, Interval, Phase, P
 from ...solver.data.faults import EmptyRange, PlacedNowhere, UnreadableRepairs
 from ...solver.data.problem import AddedContact, ContactEdit, MassTable, MotionProblem, Pin
 from ...solver.data.recording import Recording, Skin
-from ...solver.data.requests import Clear, Requests
+from ...solver.data.requests import Clear, Path, Requests
 from ...solver.data.scene import CLEARANCE, SceneObject
 from ...solver.data.solver_options import HumanRanges, ShapeSource
 from ...solver.doctor.repairs import Repairs
@@ -58,6 +58,7 @@ def problem_of(
     skin: Skin | None = None,
     with_contacts: bool = True,
     held: str = "",
+    paths: Mapping[str, Path] | None = None,
 ) -> MotionProblem:
     """What the settings ask of a recording.
 
@@ -65,6 +66,7 @@ def problem_of(
     with_contacts: whether corrections, pins and surfaces count; an analysis starts without them.
     held: name of a contact that is pinned even where it was found, for of a long take what is
     solved is what pins are about, and a drag's shall be that before the mouse has moved.
+    paths: as of `requests_of`.
     Raises PlacedNowhere, EmptyRange for a contact that ends before it begins, UnreadableRepairs,
     UnreadableText, BadRecipe, and as `requests_of`.
     """
@@ -86,7 +88,7 @@ def problem_of(
         added=_added(settings) if with_contacts else (),
         pins=_pins(settings, span, held) if with_contacts else (),
         scene=scene if with_contacts else (),
-        requests=_requests(settings, span, scene) if with_contacts else Requests(),
+        requests=_requests(settings, span, scene, paths) if with_contacts else Requests(),
         loop=loop_options(settings) is not None,
         skin=skin,
         good_enough=_METRES_PER_MM * round(settings.good_enough, 4),
@@ -97,19 +99,23 @@ def problem_of(
 
 
 def _requests(
-    settings: HangtimeSettings, span: tuple[float, float], scene: tuple[SceneObject, ...]
+    settings: HangtimeSettings,
+    span: tuple[float, float],
+    scene: tuple[SceneObject, ...],
+    paths: Mapping[str, Path] | None,
 ) -> Requests:
     """What the lists ask for, and what the armature's text does, which is a recipe's.
 
-    span: first and last scene frame. scene: as of `problem_of`. Raises BadRecipe, NamedTwice and
-    as `requests_of`.
+    span: first and last scene frame. scene, paths: as of `problem_of`. Raises BadRecipe, NamedTwice
+    and as `requests_of`.
     """
     armature: Any = settings.id_data
-    listed = requests_of(settings, armature, span)
-    listed = replace(listed, clears=_clears(settings, scene))
     text = text_of(settings)
-    if text is not None:
-        listed = joined(listed, text.problem.requests)
+    beside = text.problem.requests if text is not None else None
+    listed = requests_of(settings, armature, span, beside=beside, paths=paths)
+    listed = replace(listed, clears=_clears(settings, scene))
+    if beside is not None:
+        listed = joined(listed, beside)
     solution = replace(
         listed.solution,
         keep_times=listed.solution.keep_times or settings.keep_times,

@@ -3,61 +3,109 @@ time, however the result's phases are retimed."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import bpy
 import numpy as np
 
 from ...solver.analysis.timeline import MOST_ADDED
 from ...solver.arrays import FloatArray
-from ...solver.data.requests import Path
-from ..accessors import current_scene
+from ...solver.data.contacts import PhaseKind
+from ...solver.data.requests import Hold, Path, PhaseTiming
 from ..armature import fcurves
 from ..armature.incremental import complete
-from ..armature.poses import frames_per_second
-from ..constraint_kinds import hold, point, timing
+from ..constraint_kinds import point
 from ..movable import may_move
 from ..properties.constraint import HangtimeConstraint
-from ..rows.times import Clip, Frames
+from ..rows.times import Clip, Frames, throughout
 from ..scene.seen import seen_at, simulate
 
-LONGER = 1.0  # of the clip's duration, as a result may get without a row that asks for it
+# Beside what is asked for, jumps alone get other durations, which go with where they land.
+LONGER = 2.0  # of a flight's duration, by which it may get longer: a jump nine times as high
+LONGER_ANYWAY = 1.0  # s, where that is more: alone a jump of 1.2 m, higher than anybody's
+PUSH = 0.3  # of the time before, as a push may get longer or shorter (SPEED_RATIO in the solver)
+BESIDE = 2.0  # frames on both sides, between which places are interpolated
 
 
-def paths_of(rows: Iterable[HangtimeConstraint], clip: Clip, metres: float) -> dict[str, Path]:
+@dataclass(frozen=True)
+class Durations:
+    """What changes durations: held frames and timings that are asked for, and whether jumps get
+    those that go with where they land. rate: frames a second."""
+
+    rate: float
+    holds: tuple[Hold, ...] = ()
+    timings: tuple[PhaseTiming, ...] = ()
+    free: bool = True
+
+    def reached(self, row: Any, clip: Clip) -> Frames:
+        """First and last frame of a result at which a row may hold, and some beside them."""
+        held = {hold.name: (hold.frame, hold.frame) for hold in self.holds}
+        first, last = throughout(row, {**held, **clip.phases})
+        begins, ends = clip.ends
+        first, last = min(max(first, begins), ends), max(min(last, ends), begins)
+        changes = [*self._asked(last, clip.phases), *self._free(last, clip)]
+        sooner, later = (sum(each) for each in zip((0.0, 0.0), *changes, strict=True))
+        return max(first - sooner - BESIDE, begins), last + later + BESIDE
+
+    def _asked(self, last: float, phases: Mapping[str, Frames]) -> Iterator[Frames]:
+        """By how many frames what is asked for moves a frame, at most: sooner, and later."""
+        most = MOST_ADDED * self.rate  # a solve refuses more
+        for hold in self.holds:
+            if hold.frame <= last + BESIDE:
+                yield 0.0, min(hold.seconds * self.rate, most)
+        for timing in self.timings:
+            begins, ends = phases.get(timing.phase, (last, last))
+            if begins < last:
+                length = ends - begins
+                wanted = length * (timing.factor or 1.0)
+                if timing.seconds is not None:
+                    wanted = timing.seconds * self.rate
+                yield max(length - wanted, 0.0), min(max(wanted - length, 0.0), most)
+
+    def _free(self, last: float, clip: Clip) -> Iterator[Frames]:
+        """Likewise for the durations of jumps."""
+        named = clip.phases.items()
+        flights = [ends for name, ends in named if name.startswith(PhaseKind.FLIGHT.value)]
+        if not self.free or not flights:
+            return
+        push = PUSH * (last - clip.ends[0])
+        yield push, push
+        for begins, ends in flights:
+            passed = min(last, ends) - begins
+            if passed > 0.0:
+                yield passed, max(LONGER * passed, LONGER_ANYWAY * self.rate)
+
+
+def paths_of(
+    rows: Iterable[HangtimeConstraint],
+    clip: Clip,
+    metres: float,
+    durations: Durations,
+    known: Mapping[str, Path],
+) -> dict[str, Path]:
     """The paths of those points that follow a target, by the row's name.
 
-    rows: all that are used. metres: per Blender unit. The scene's frame, and what is seen, are
-    afterwards what they were.
+    metres: per Blender unit. known: paths that were taken before, for the whole scene is evaluated
+    at each of a path's frames. The scene's frame, and what is seen, are afterwards what they were.
     """
-    every = list(rows)
-    following = [r for r in every if r.kind == point.KIND.name and r.target is not None]
-    frames = _whole_frames(*_possible_frames(every, clip))
-    targets = {row.target for row in following}
-    moving = [target for target in targets if not _moves_by_keys_alone(target)]
-    seen = _sampled([t for t in moving if may_move(t)], frames)
-    seen |= _sampled([t for t in moving if not may_move(t)], frames[:1])
-    paths = {}
-    for row in following:
-        places = seen[row.target] if row.target in moving else _keyed(row.target, frames)
-        paths[row.name] = _path(frames[: len(places)], metres * places)
+    following = [r for r in rows if r.kind == point.KIND.name and r.target is not None]
+    paths = {row.name: known[row.name] for row in following if row.name in known}
+    new = [row for row in following if row.name not in paths]
+    frames = {row.name: _whole_frames(*durations.reached(row, clip)) for row in new}
+    moving = {row.target for row in new if not _moves_by_keys_alone(row.target)}
+    every = np.unique([f for row in new if row.target in moving for f in frames[row.name]])
+    seen = _sampled([target for target in moving if may_move(target)], every)
+    still = _sampled([target for target in moving if not may_move(target)], every[:1])
+    for row in new:
+        target, at = row.target, frames[row.name]
+        if target in seen:
+            places = seen[target][np.isin(every, at)]
+        else:
+            places = still[target] if target in still else _keyed(target, at)
+        paths[row.name] = _path(at[: len(places)], metres * places)
     return paths
-
-
-def _possible_frames(rows: Iterable[HangtimeConstraint], clip: Clip) -> Frames:
-    """First frame of a result, and the last that it could have: the solver alone knows durations.
-
-    rows: all that are asked for.
-    """
-    first, last = clip.ends
-    rate = frames_per_second(current_scene())
-    asked = 0.0  # s, by rows
-    for row in rows:
-        if row.kind == timing.KIND.name and timing.by_factor(row):
-            asked += row.factor * (last - first) / rate
-        elif row.kind in (hold.KIND.name, timing.KIND.name):
-            asked += row.seconds
-    return first, last + LONGER * (last - first) + rate * min(asked, MOST_ADDED)
 
 
 def _whole_frames(first: float, last: float) -> FloatArray:

@@ -85,7 +85,7 @@ def interval_of(row: Any, phases: Spans, motion: Traces | None) -> Frames:
     phases: only looked at for a row that names one. motion: whose centre of mass is highest at an
     apex, as the solver finds it; without one, an apex is drawn in its phase's middle.
     """
-    first, last = _throughout(row, phases)
+    first, last = throughout(row, phases)
     moment = MOMENTS.get(Instant[row.instant]) if row.span == Span.PHASE.name else None
     if moment is None or first > last:
         return first, last
@@ -98,7 +98,9 @@ def interval_of(row: Any, phases: Spans, motion: Traces | None) -> Frames:
     return NEVER if at is None else (at, at)
 
 
-def _throughout(row: Any, phases: Spans) -> Frames:
+def throughout(row: Any, phases: Spans) -> Frames:
+    """First and last scene frame of what a row names, of an instant the whole phase; else as of
+    `interval_of`."""
     match Span[row.span]:
         case Span.PHASE:
             return phases.get(row.phase, NEVER)

@@ -249,12 +249,17 @@ def window_doubts(
 
 
 def followed_problem(settings: HangtimeSettings, asked: Asked, held: str) -> MotionProblem:
-    """What the settings ask by now of what was read for `asked`, as a drag follows it.
+    """What the settings ask by now of what was read for `asked`, as a drag follows it: points'
+    targets are where they were then, for to look again would evaluate the scene at every move.
 
     held: name of the contact that the mouse holds. Raises AimedBone, and as `problem_of`.
     """
     recording, skin = asked.recording, asked.problem.skin
-    problem = problem_of(settings, recording, asked.scene.objects, skin=skin, held=held)
+    points = asked.problem.requests.points
+    paths = {each.name: each.path for each in points if each.path is not None}
+    problem = problem_of(
+        settings, recording, asked.scene.objects, skin=skin, held=held, paths=paths
+    )
     require_unaimed(problem.requests, asked.aimed, recording.bones)
     requests = apart_from_aimed(problem.requests, asked.aimed, recording.bones)
     return replace(problem, requests=requests)

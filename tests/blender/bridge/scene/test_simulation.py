@@ -10,7 +10,7 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.constraint_kinds import point
-from hangtime.bridge.constraints import target_paths
+from hangtime.bridge.constraints.target_paths import Durations, paths_of
 from hangtime.bridge.rows.times import Clip
 from hangtime.bridge.scene.ground import ground_faces
 from hangtime.bridge.scene.members import ground_members, members
@@ -112,8 +112,9 @@ def test_a_point_s_target_that_hangs_on_a_body_goes_with_it(
     target = bpy.data.objects.new("Target", None)
     bpy.context.scene.collection.objects.link(target)
     target.parent = crate
-    row = SimpleNamespace(name="hand", kind=point.KIND.name, target=target)
-    path = target_paths.paths_of([row], Clip((1040.0, 1050.5), (), {}), 1.0)["hand"]
+    row = SimpleNamespace(name="hand", kind=point.KIND.name, target=target, span="ALWAYS")
+    clip = Clip((1040.0, 1050.5), (), {})
+    path = paths_of([row], clip, 1.0, Durations(24.0), {})["hand"]
     assert [place[2] for place in (path.places[0], path.places[-1])] == pytest.approx(
         [RESTS, RESTS], abs=0.05
     )

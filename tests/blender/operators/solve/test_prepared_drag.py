@@ -13,6 +13,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 from hangtime.bridge.accessors import present
 from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.constraint_kinds import point
 from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.bridge.worker_client import shared
 from hangtime.operators.drag import follow_mixin
@@ -25,6 +26,7 @@ from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.status import DragStatus
 from hangtime.solver.worker.protocol import Followed
 from hangtime.tests.blender.helpers.jump_scene import ask_by_text
+from hangtime.tests.blender.helpers.rows import added
 from hangtime.tests.helpers.clips import JUMP_FRAMES
 from mathutils import Vector
 
@@ -160,6 +162,33 @@ def test_a_drag_is_among_the_surfaces_as_they_are_now(analysed, asked: Asked) ->
         next(following)
     assert [len(problem.scene) for problem in asked.problems] == [0, 1]
     assert len(session().dragged.scene.objects) == 1
+
+
+def test_a_move_of_the_mouse_looks_at_no_target_again(analysed, asked: Asked) -> None:
+    truck, handle = (bpy.data.objects.new(name, None) for name in ("Truck", "Handle"))
+    for each in (truck, handle):
+        bpy.context.scene.collection.objects.link(each)
+    handle.parent = truck
+    for frame in JUMP_FRAMES:
+        truck.location.x = frame
+        truck.keyframe_insert("location", frame=frame)
+    added(analysed, point.KIND, "LeftHand", span="ALWAYS", target=handle, name="Grab")
+    complete(_prepare_drag(bpy.context))
+    drag, looked_at = Drag(analysed), []
+    drag._idle = False  # the mouse moves
+
+    def note(scene: bpy.types.Scene, *_: object) -> None:
+        looked_at.append(scene.frame_current_final)
+
+    bpy.app.handlers.frame_change_post.append(note)
+    try:
+        next(drag._follow(bpy.context))
+    finally:
+        bpy.app.handlers.frame_change_post.remove(note)
+    assert not looked_at
+    prepared, followed = (problem.requests.points[0].path for problem in asked.problems)
+    assert prepared == followed
+    assert len(present(followed).frames) > 1
 
 
 @pytest.mark.usefixtures("analysed", "asked")
