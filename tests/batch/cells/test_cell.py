@@ -57,6 +57,7 @@ def cells(batch: Path) -> tuple[CellPlan, ...]:
     return read_manifest(batch).cells
 
 
+@pytest.mark.slow
 def test_a_cell_leaves_what_was_asked_for_in_a_folder_of_its_own(batch: Path) -> None:
     cell = cells(batch)[0].cell
     result = run_cell(batch, cell)

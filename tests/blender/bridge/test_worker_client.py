@@ -204,6 +204,7 @@ def test_a_process_that_was_stopped_once_it_had_answered_is_replaced(
     assert worker.pid != pid
 
 
+@pytest.mark.slow
 def test_a_solve_that_is_stopped_gives_the_motion_as_it_stands(
     fitted: Worker, jump: Recording
 ) -> None:

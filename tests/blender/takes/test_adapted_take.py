@@ -31,6 +31,7 @@ def keys_of(armature: bpy.types.Object) -> dict[tuple[str, int], np.ndarray]:
     }
 
 
+@pytest.mark.slow
 def test_what_follows_a_moved_landing_is_carried_along(analysed: bpy.types.Object) -> None:
     before, take = keys_of(analysed), read_recording(analysed)
     stance = analysed.hangtime.stances["ground 2"]

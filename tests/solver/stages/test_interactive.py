@@ -63,6 +63,7 @@ def deepest(follower: Follower) -> float:
     return max((each.amount for each in world.penetrations(follower.motion).worst()), default=0.0)
 
 
+@pytest.mark.slow
 def test_floor_and_limbs_are_solid_while_the_pin_is_dragged() -> None:
     kept, through = (
         Follower(fitted_hop(), careless(moved(0.0), solid=solid)) for solid in (True, False)

@@ -30,6 +30,7 @@ def done(clip: Path, tmp_path_factory) -> Path:
     return out
 
 
+@pytest.mark.slow
 def test_all_files_are_there_and_no_others(done: Path) -> None:
     assert {path.name for path in done.iterdir()} == FILES
     assert all(path.stat().st_size > 500 for path in done.iterdir())
