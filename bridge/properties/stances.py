@@ -17,7 +17,8 @@ from math import atan2, tau
 import bpy
 from mathutils import Matrix, Vector
 
-from ...solver.data.contacts import Touch, footfalls, stood_on_first, takes_steps
+from ...solver.contacts.footfalls import footfalls, stood_on_first, takes_steps
+from ...solver.data.contacts import Touch
 from ..accessors import attached
 from ..movable import may_move
 from ..rows.choices import Moves

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
 from ...solver.data.requests import Vector
+from ...solver.numerics.runs import runs
 from ..filters import CUT_OFFS, differentiated, low_pass, resampled
 from .trials import FEET, GroundForces, Trial
 
@@ -169,9 +170,7 @@ def _facts(forces: GroundForces, window: tuple[float, float]) -> tuple[float, fl
 
 def loaded_intervals(times: FloatArray, loaded: BoolArray) -> list[tuple[float, float]]:
     """Runs of samples at which something is loaded, first and last instant, s."""
-    edges = np.diff(np.concatenate(([0], loaded.astype(np.int8), [0])))
-    first, last = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
-    return [(float(times[a]), float(times[b])) for a, b in zip(first, last, strict=True)]
+    return [(float(times[a]), float(times[b])) for a, b in runs(loaded)]
 
 
 def _inside(times: FloatArray, window: tuple[float, float]) -> BoolArray:

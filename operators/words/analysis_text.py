@@ -11,7 +11,8 @@ from ...bridge.recipe.recording import FILE, RECORDING, FileReading
 from ...bridge.recipe_syntax.toml_text import sections
 from ...solver.analysis.analyse import Analysis
 from ...solver.analysis.pinned_places import backward_stances
-from ...solver.data.contacts import Contact, Phase, PhaseKind, footfalls, takes_steps
+from ...solver.contacts.footfalls import footfalls, takes_steps
+from ...solver.data.contacts import Contact, Phase, PhaseKind
 from ...solver.data.faults import UnseenSupport
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin

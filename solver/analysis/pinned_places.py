@@ -5,8 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ..arrays import FloatArray
+from ..contacts.footfalls import footfalls
 from ..data.constants import UP
-from ..data.contacts import ContactSchedule, Phase, PhaseKind, footfalls
+from ..data.contacts import ContactSchedule, Phase, PhaseKind
 from ..data.faults import BeyondPrecision, ContradictoryPins, UnknownContact, UnknownPhase
 from ..data.problem import MotionProblem, OffsetAxes, Pin
 from ..data.scene import SceneObject

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray
+from ..arrays import FloatArray
 from ..data.contacts import (
     Contact,
     ContactPoint,
@@ -18,6 +18,7 @@ from ..data.contacts import (
     numbered,
 )
 from ..numerics.interpolation import interpolate
+from ..numerics.runs import runs
 from ..scene.carrier import Carrier
 from ..scene.support import Heights, level
 from ..unseen.free_fall import is_free_fall, off_gravity, unseen_support
@@ -94,7 +95,7 @@ def _touches(
     at_rest = low & (np.linalg.norm(movement.velocity, axis=1) < thresholds.max_speed)
     candidates = [
         candidate
-        for first, last in _runs(at_rest)
+        for first, last in runs(at_rest)
         for candidate in _candidates_around(clock, thresholds, movement, first, last)
     ]
     for candidate in _joined(_without_pauses(candidates, thresholds, movement), movement.track):
@@ -144,7 +145,7 @@ def _candidates_around(
     """Region growing from a rest to where the point leaves its place; usually one candidate."""
     begin, landing, lifting = _shares_around(thresholds, movement, first, last)
     times = clock[begin : begin + len(landing)]
-    for a, b in _runs(np.minimum(landing, lifting) <= 1.0):
+    for a, b in runs(np.minimum(landing, lifting) <= 1.0):
         inside = slice(a, b + 1)
         stands = (landing[inside] <= 1.0).any() and (lifting[inside] <= 1.0).any()
         if stands and begin + a <= last and begin + b >= first:
@@ -223,13 +224,6 @@ def _first_below(times: FloatArray, excess: FloatArray, frame: int) -> float:
 def _last_below(times: FloatArray, excess: FloatArray, frame: int) -> float:
     """Last crossing of `excess` (T,) up to 1 from `frame` back, s, linear between frames."""
     return -_first_below(-times[::-1], excess[::-1], len(times) - 1 - frame)
-
-
-def _runs(mask: BoolArray) -> list[tuple[int, int]]:
-    """First and last index of every run of True in (T,)."""
-    edges = np.diff(np.concatenate(([0], mask.astype(np.int8), [0])))
-    first, last = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
-    return list(zip(first.tolist(), last.tolist(), strict=True))
 
 
 def _without_pauses(

@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import FloatArray
-from ..data.contacts import ContactSchedule, Interval, footfalls, gaps
+from ..contacts.footfalls import footfalls
+from ..data.contacts import ContactSchedule, Interval, gaps
 from ..numerics.rotations import axis_rotation, planar_turn
 from ..numerics.splines import dense_instants, greville_abscissae
 from ..transcription.motion import Motion

@@ -13,7 +13,8 @@ from hangtime.solver.analysis.pinned_places import (
     travel_axes,
 )
 from hangtime.solver.arrays import FloatArray
-from hangtime.solver.data.contacts import Contact, ContactSchedule, Touch, footfalls, numbered
+from hangtime.solver.contacts.footfalls import footfalls
+from hangtime.solver.data.contacts import Contact, ContactSchedule, Touch, numbered
 from hangtime.solver.data.faults import (
     BeyondPrecision,
     ContradictoryPins,
