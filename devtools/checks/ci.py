@@ -7,13 +7,14 @@ adds up all tests.
 
 from __future__ import annotations
 
+import os
 import shlex
 import shutil
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,6 +26,7 @@ from . import summary
 
 ROOT = Path(__file__).resolve().parents[2]
 CORES = 2
+ONE_CORE = {"HANGTIME_THREADS": "1"}  # SOLVER_THREADS: a neighbour has the other core
 RECALLED = 25  # last lines of a check that failed, told once more at the end
 # Recordings that may not be redistributed; the trial held here is among them.
 TRIALS = ROOT.parent / "shared" / "validation"
@@ -159,7 +161,9 @@ def run_all(first: list[Check], shared: list[Check], folder: Path) -> Iterator[C
     for check in first:
         yield told(run(check, folder))
     with ThreadPoolExecutor(CORES) as pool:
-        for pending in as_completed([pool.submit(run, check, folder) for check in shared]):
+        for pending in as_completed(
+            [pool.submit(run, check, folder, ONE_CORE) for check in shared]
+        ):
             yield told(pending.result())
 
 
@@ -193,8 +197,11 @@ def take_over(clone: Path) -> None:
             part.rename(CACHE / made.name)
 
 
-def run(check: Check, folder: Path) -> CheckRun:
-    """Run a check's calls; what they print is kept."""
+def run(check: Check, folder: Path, variables: Mapping[str, str] | None = None) -> CheckRun:
+    """Run a check's calls; what they print is kept.
+
+    variables: of its environment, besides those of this process.
+    """
     start = time.perf_counter()
     text, passed = "", True
     for call in check.calls:
@@ -204,6 +211,7 @@ def run(check: Check, folder: Path) -> CheckRun:
         ended = subprocess.run(
             [sys.executable, "dev.py", *words],
             cwd=check.root,
+            env=os.environ | (variables or {}),
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,

@@ -13,6 +13,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import IO
 
+from ...solver.one_thread import SOLVER_THREADS
 from ...solver.worker.program import STACKS_FOLDER
 from ..environment.virtual_environment import ROOT
 from .summary import read_all
@@ -48,7 +49,11 @@ def main(argv: list[str]) -> int:
 
 
 def run_all(suites: Mapping[str, list[str]], folder: Path, limits: Limits) -> int:
-    """1 where a suite fails. They run side by side, and are told one after the other."""
+    """1 where a suite fails. They run side by side, and are told one after the other.
+
+    Several keep the cores busy by themselves: threads for one solve would cost them a tenth.
+    """
+    variables = os.environ | ({SOLVER_THREADS: "1"} if len(suites) > 1 else {})
     with ThreadPoolExecutor() as pool, contextlib.ExitStack() as logs:
         waiting: list[tuple[Future[int], IO[bytes] | None]] = []
         for name, arguments in suites.items():
@@ -56,7 +61,7 @@ def run_all(suites: Mapping[str, list[str]], folder: Path, limits: Limits) -> in
             if waiting:
                 log = logs.enter_context(tempfile.TemporaryFile())
             report = folder / f"{name}.xml"
-            waiting.append((pool.submit(run, arguments, report, limits, log), log))
+            waiting.append((pool.submit(run, arguments, report, limits, variables, log), log))
         codes = []
         for pending, log in waiting:
             codes.append(pending.result())
@@ -66,10 +71,16 @@ def run_all(suites: Mapping[str, list[str]], folder: Path, limits: Limits) -> in
     return int(any(codes))
 
 
-def run(arguments: list[str], report: Path, limits: Limits, log: IO[bytes] | None = None) -> int:
+def run(
+    arguments: list[str],
+    report: Path,
+    limits: Limits,
+    variables: Mapping[str, str] = os.environ,
+    log: IO[bytes] | None = None,
+) -> int:
     """Exit code of one pytest process; a report is left even where the process was lost.
 
-    log: takes what it says; None lets it say so itself.
+    variables: of its environment. log: takes what it says; None lets it say so itself.
     """
     report.unlink(missing_ok=True)
     command = [sys.executable, str(RUNNER), f"--junitxml={report}", *arguments]
@@ -78,7 +89,7 @@ def run(arguments: list[str], report: Path, limits: Limits, log: IO[bytes] | Non
         process = subprocess.Popen(
             command,
             cwd=ROOT,
-            env={**os.environ, STACKS_FOLDER: scratch},
+            env={**variables, STACKS_FOLDER: scratch},
             start_new_session=True,
             stdout=log,
             stderr=subprocess.STDOUT if log else None,

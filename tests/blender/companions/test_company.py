@@ -40,6 +40,8 @@ from hangtime.tests.blender.helpers.figures.company import FRAMES, LENGTH, ON, a
 FIRST, LAST = 20, 35
 AHEAD = StanceMove("ground 2", (0.0, 0.0, 0.0), 0.0, (0.0, -0.4, 0.0))
 TURNED = StanceMove("ground 2", (0.3, -0.2, 0.0), 0.5, (0.1, -0.4, 0.2))
+# The tests of the others are CI's.
+LATER = [pytest.param(m, marks=pytest.mark.slow) for m in ("XYZ", "AXIS_ANGLE")]
 
 
 def moved(armature: bpy.types.Object, move: StanceMove, **options: object) -> AdaptedMotion:
@@ -90,7 +92,7 @@ def test_helper_bones_stay_on_the_body(mode: str, root: str, move: StanceMove, b
         np.testing.assert_allclose(at(now, "ik_head")[52:], at(was, "ik_head")[52:], atol=1e-5)
 
 
-@pytest.mark.parametrize("mode", ["QUATERNION", "XYZ", "AXIS_ANGLE"])
+@pytest.mark.parametrize("mode", ["QUATERNION", *LATER])
 @pytest.mark.parametrize("move", [AHEAD, TURNED])
 def test_a_root_bone_stays_under_the_hips_as_in_the_take(mode: str, move: StanceMove) -> None:
     armature = take(mode)

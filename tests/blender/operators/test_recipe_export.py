@@ -74,7 +74,7 @@ def test_a_path_from_the_file_s_folder_on_gives_no_warning(
     assert [str(warning.message) for warning in recwarn] == []
 
 
-@pytest.mark.skipif(bpy.app.version < (4, 5, 0), reason="Blender does not ask for it")
+@pytest.mark.skipif(bpy.app.version < (4, 5, 0), reason="paths may be relative since Blender 4.5")
 @pytest.mark.parametrize(
     "asked", ["export", "export_recipe", "save_plots", "export_bone_preset", "import_bone_preset"]
 )

@@ -92,7 +92,7 @@ def test_a_spike_of_the_whole_body_is_told_by_how_far_it_is_away() -> None:
     assert found.frames == ((frame, frame),)
 
 
-@pytest.mark.parametrize("frames", [1, 3, 6])
+@pytest.mark.parametrize("frames", [1, pytest.param(3, marks=pytest.mark.slow), 6])
 @pytest.mark.parametrize("off", [[0.06, 0.0, 0.0], [0.0, 0.06, 0.06]])
 def test_frames_of_a_run_that_are_off_are_a_spike_and_no_cut(off: list[float], frames: int) -> None:
     """From a frame to the next the runner goes about as far as they are off."""

@@ -28,6 +28,8 @@ EDITS = {
     "aside": Pin("landing", LANDING, offset=(0.0, 0.3, 0.0)),
     "down": Pin("landing", LANDING, offset=(0.0, 0.0, -0.2)),
 }
+QUICK = {"forward", "both", "down"}  # the others are of the same kinds
+ALL = [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in EDITS]
 
 
 def adapted(*pins: Pin) -> Adaptation:
@@ -61,7 +63,7 @@ def contact_places(adaptation: Adaptation) -> np.ndarray:
     return at[np.arange(len(contacts)), [c.point for c in contacts]]
 
 
-@pytest.mark.parametrize("name", EDITS)
+@pytest.mark.parametrize("name", ALL)
 def test_the_landing_goes_exactly_where_it_is_asked_to(name: str) -> None:
     adaptation = edited(name)
     fitted = fitted_hop()
@@ -206,7 +208,7 @@ def test_adapting_leaves_the_fit_alone() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", EDITS)
+@pytest.mark.parametrize("name", ALL)
 @pytest.mark.parametrize(
     "relative",
     [

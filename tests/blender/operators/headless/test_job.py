@@ -36,6 +36,7 @@ def test_all_files_are_there_and_no_others(done: Path) -> None:
     assert all(path.stat().st_size > 500 for path in done.iterdir())
 
 
+@pytest.mark.slow
 def test_the_report_says_solved(done: Path) -> None:
     report = json.loads((done / "report.json").read_text(encoding="utf-8"))
     assert report["status"] == "solved"
@@ -47,6 +48,7 @@ def test_the_report_says_solved(done: Path) -> None:
     assert max(c["worst_violation_mm"] for c in report["contacts"]) < 1.0
 
 
+@pytest.mark.slow
 def test_the_blend_holds_both_side_by_side(done: Path) -> None:
     bpy.ops.wm.open_mainfile(filepath=str(done / "adapted.blend"))
     armatures = {o.name: o for o in bpy.data.objects if o.type == "ARMATURE"}
@@ -63,6 +65,7 @@ def test_the_blend_holds_both_side_by_side(done: Path) -> None:
     assert last > 336.0  # further, so longer, and the rest of the take later
 
 
+@pytest.mark.slow
 def test_the_report_tells_what_was_done_to_the_take(done: Path) -> None:
     report = json.loads((done / "report.json").read_text(encoding="utf-8"))
     take = report["take"]
@@ -103,6 +106,7 @@ def test_pinned_points_stay_where_they_were_sent(done: Path) -> None:
                 assert off.max() < 2e-3, contact["name"]
 
 
+@pytest.mark.slow
 def test_the_recording_is_untouched(done: Path, clip: Path) -> None:
     bpy.ops.wm.open_mainfile(filepath=str(done / "adapted.blend"))
     kept = fcurves.holder(bpy.data.objects["forward_jump_116cm recording"]).fcurves

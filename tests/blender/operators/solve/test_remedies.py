@@ -42,7 +42,14 @@ def test_a_wrong_rate_of_ntsc_s_is_mended_by_another() -> None:
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
 
 
-@pytest.mark.parametrize(("base", "scale"), [(1.0, 2.0), (1.001, 2.0), (1.0, 1.998)])
+@pytest.mark.parametrize(
+    ("base", "scale"),
+    [
+        (1.0, 2.0),
+        pytest.param(1.001, 2.0, marks=pytest.mark.slow),
+        pytest.param(1.0, 1.998, marks=pytest.mark.slow),
+    ],
+)
 def test_a_strip_that_plays_the_jump_too_slowly_is_named_with_the_scale_that_fits(
     jump: bpy.types.Object, base: float, scale: float
 ) -> None:
