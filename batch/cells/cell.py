@@ -87,12 +87,10 @@ def _ended(
         done = act(settings, plan, fits, outbox, stages)
     except OutputNotWritable as fault:
         raise unusable(fault.path, fault.problem) from fault  # the folder's fault, not the cell's
-    except NoSolution as fault:
-        return _Ended(State.NO_SOLUTION, explained(fault, recipe))
     except InputChanged as fault:  # no end of what was planned: it may come back
         return _Ended(State.FAILED, str(fault))
     except Fault as fault:
-        return _Ended(State.WRONG_INPUT, explained(fault, recipe))
+        return _Ended(_state(fault), explained(fault, recipe))
     except (OSError, MemoryError, BatchFault):
         raise
     except Exception as error:  # noqa: BLE001  # one cell's crash is not the batch's
@@ -100,8 +98,12 @@ def _ended(
         kind = type(error).__name__
         return _Ended(State.FAILED, f"A fault of Hangtime's ({kind}); send its {LOG} to us.")
     if done.fault is not None:
-        return _Ended(State.NO_SOLUTION, explained(done.fault, recipe), done)
+        return _Ended(_state(done.fault), explained(done.fault, recipe), done)
     return _Ended(State.DONE, "", done)
+
+
+def _state(fault: Fault) -> State:
+    return State.NO_SOLUTION if isinstance(fault, NoSolution) else State.WRONG_INPUT
 
 
 def _tell(ended: _Ended, log: TextIO) -> None:

@@ -25,7 +25,7 @@ from ...operators.words.doctor_text import diagnosis_text, finding_sentence
 from ...operators.words.headline import headline, nearness
 from ...operators.words.messages import together
 from ...operators.words.warning_text import warning_lines
-from ...solver.data.faults import BadRecipe, NoSolution
+from ...solver.data.faults import BadRecipe, Fault, FitNeedsSupport
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
 from ...solver.data.requests import Requests
@@ -59,7 +59,7 @@ class Done:
 
     headline: tuple[str, ...] = ()
     figures: Mapping[str, float] = field(default_factory=dict)
-    fault: NoSolution | None = None
+    fault: Fault | None = None
 
 
 @dataclass(frozen=True)
@@ -134,9 +134,13 @@ def check_cell(
     counted = {"findings": float(len(faults))}
     if not fitted.solved:
         return Done(told, counted, no_fit(loaded.subject, fitted, examined=True))
-    refuse_unseen(loaded.subject.problem, fitted)
     quality = fit_quality(fitted)
-    return Done((nearness(quality), *told), counted | fit_figures(quality))
+    refused = None
+    try:
+        refuse_unseen(loaded.subject.problem, fitted)
+    except FitNeedsSupport as fault:
+        refused = fault
+    return Done((nearness(quality), *told), counted | fit_figures(quality), refused)
 
 
 def cell_files(plan: CellPlan) -> tuple[Path, ...]:

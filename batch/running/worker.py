@@ -15,8 +15,9 @@ from queue import SimpleQueue
 from threading import Thread
 from typing import Any, BinaryIO
 
-from ...solver.worker.program import bounded_loading, private_stdout
+from ...solver.worker.program import bounded_loading, end_by_exception, private_stdout
 
+FAILED = 1  # exit code
 Run = Callable[[Path], Callable[[str], Any]]  # of a batch's folder: what solves a cell of it
 
 
@@ -44,20 +45,26 @@ def main(run: Run = solver) -> None:
     cells: SimpleQueue[str] = SimpleQueue()
     Thread(target=_listen, args=(requests, cells), daemon=True).start()
     _send(answers, {"ready": True, **used()})
-    while True:
-        cell = cells.get()
-        try:
-            result = solve(cell)
-        except BatchFault as fault:
-            _send(answers, {"cell": cell, "stop": str(fault)})
-        else:
-            _send(answers, {"cell": cell, "state": result.state.value, **used()})
+    try:
+        while True:
+            cell = cells.get()
+            try:
+                result = solve(cell)
+            except BatchFault as fault:
+                _send(answers, {"cell": cell, "stop": str(fault)})
+            else:
+                _send(answers, {"cell": cell, "state": result.state.value, **used()})
+    finally:  # by an exception
+        end_by_exception(FAILED)
 
 
 def _listen(requests: BinaryIO, cells: SimpleQueue[str]) -> None:
-    for line in requests:
-        cells.put(json.loads(line))
-    os._exit(0)  # nobody waits for what is being solved; its folder has no name yet
+    try:
+        for line in requests:
+            cells.put(json.loads(line))
+        os._exit(0)  # nobody waits for what is being solved; its folder has no name yet
+    finally:  # by an exception: cells would be waited for, for ever
+        end_by_exception(FAILED)
 
 
 def _send(answers: BinaryIO, message: dict[str, Any]) -> None:

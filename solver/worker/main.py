@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import os
 import sys
-import traceback
 from collections.abc import Callable
 from queue import SimpleQueue
 from threading import Lock, Thread
-from typing import TYPE_CHECKING, BinaryIO, NoReturn
+from typing import TYPE_CHECKING, BinaryIO
 
-from .program import bounded_loading, private_stdout
+from .program import bounded_loading, end_by_exception, private_stdout
 
 if TYPE_CHECKING:
     from .protocol import Ending, Halted, Message, Request
@@ -28,14 +27,6 @@ def main() -> int:
         return _serve(requests, answers)
     except BrokenPipeError:
         return 0
-
-
-def _end_by_exception(code: int) -> NoReturn:
-    """Ends the process with an exception as its last words. Python's own shutdown would abort with
-    others where a thread is still reading the standard input."""
-    traceback.print_exc()
-    sys.stderr.flush()
-    os._exit(code)
 
 
 def _serve(requests: BinaryIO, answers: BinaryIO) -> int:
@@ -66,7 +57,7 @@ def _serve(requests: BinaryIO, answers: BinaryIO) -> int:
     except BrokenPipeError:
         os._exit(0)  # the parent has gone
     finally:  # by an exception
-        _end_by_exception(FAILED)
+        end_by_exception(FAILED)
 
 
 class Inbox:
@@ -93,7 +84,7 @@ class Inbox:
         try:
             self._listen()
         finally:  # by an exception; every other end of it is the process's
-            _end_by_exception(DEAF)
+            end_by_exception(DEAF)
 
     def _listen(self) -> None:
         from .protocol import Halt, Halted, ProtocolError, Request, receive

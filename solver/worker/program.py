@@ -12,10 +12,11 @@ import importlib.util
 import os
 import signal
 import sys
+import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, NoReturn
 
 NAME = "hangtime"
 LOADING = 60.0  # s, in which libraries load from the slowest disk
@@ -44,6 +45,14 @@ def bounded_loading() -> Iterator[None]:
         product(np.eye(128), np.eye(128))  # small ones need no memory on some processors
     finally:
         faulthandler.cancel_dump_traceback_later()
+
+
+def end_by_exception(code: int) -> NoReturn:
+    """Ends the process with an exception as its last words. Python's own shutdown would abort with
+    others where a thread is still reading the standard input."""
+    traceback.print_exc()
+    sys.stderr.flush()
+    os._exit(code)
 
 
 def tell_stacks() -> None:

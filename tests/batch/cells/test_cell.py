@@ -25,10 +25,12 @@ from hangtime.batch.records.result import (
     read_result,
 )
 from hangtime.bridge.formats.bvh import read_bvh
+from hangtime.bridge.formats.bvh_writer import write_bvh
 from hangtime.solver.data.faults import OutputNotWritable
 from hangtime.solver.fitting.fit import Fit
 from hangtime.solver.worker.unpickling import Unreadable, unpickled
 from hangtime.tests.helpers.clips import joined_after, mocap_path
+from hangtime.tests.helpers.leaned import leaned
 
 RECIPE = """
 frames = [20, 190]
@@ -282,6 +284,19 @@ def test_what_a_check_leaves_out_is_counted_in_the_whole_clip(tmp_path: Path) ->
     run_cell(tmp_path / "out", cell)
     told = (cell_folder(tmp_path / "out", cell) / work.DIAGNOSIS).read_text(encoding="utf-8")
     assert "remedy: trim = 90\n" in told
+
+
+@pytest.mark.slow
+def test_a_check_that_is_refused_what_carries_unseen_tells_what_it_found(tmp_path: Path) -> None:
+    recipe, clip = tmp_path / "recipe.toml", tmp_path / "leaned.bvh"
+    recipe.write_text('unseen_support = "refuse"\n')
+    write_bvh(leaned(20.0), clip, 1.0, "Z")
+    plan(Asked(BatchSettings(check=True), [str(clip)], [str(recipe)]), tmp_path / "out")
+    result = run_cell(tmp_path / "out", cells(tmp_path / "out")[0].cell)
+    assert result.state is State.WRONG_INPUT
+    assert "which the recipe refuses" in result.sentence
+    assert result.headline
+    assert result.figures["fit_joint_centres_rms_cm"] < 1.0
 
 
 @pytest.mark.slow
