@@ -64,9 +64,10 @@ FIT_COST_WEIGHTS = CostWeights(
 # What carries unseen is for the recording to say.
 # What is before the range stays as it was, so who begins elsewhere lurches there: over an obstacle
 # in Mars' gravity it began 38 cm behind; with 1, 10 and 100 here that is 12, 3.4 and 1.5 cm. What
-# follows goes along with the landing, so the end is free.
+# follows goes along with the landing, so the end is free. A seat stays where it is:
+# to move a foot the whole body slid off it (by 13 cm of 14; with 10 and 100 here 1.6 and 0.2).
 ADAPT_COST_WEIGHTS = CostWeights(
-    shape=1.0, com=0.02, acceleration_time=0.1, force=3e-3, support=1.0, came_from=10.0
+    shape=1.0, com=0.02, acceleration_time=0.1, force=3e-3, support=1.0, came_from=10.0, rest=100.0
 )
 # Durations are found by poses (durations.py): as in an adaptation, but forces and the centre of
 # mass only settle what no pose shows. The weight of accelerations was chosen on two broad jumps,

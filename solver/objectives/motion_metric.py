@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..arrays import BoolArray
 from ..body.kinematics import forward_kinematics
 from ..numerics.block_banded import BlockBanded
 from ..transcription.motion import Motion
@@ -11,10 +12,16 @@ from .tracking_cost import CostWeights, TrackingCost, TrackingTarget, marker_poi
 
 
 def motion_metric(
-    motion: Motion, weights: CostWeights, price: JointPrice | None = None
+    motion: Motion,
+    weights: CostWeights,
+    price: JointPrice | None = None,
+    resting: BoolArray | None = None,
 ) -> BlockBanded:
-    """Metric W at a motion: Gauss-Newton Hessian of the tracking cost to itself."""
-    cost = TrackingCost(motion.transcription, motion_target(motion), weights, price)
+    """Metric W at a motion: Gauss-Newton Hessian of the tracking cost to itself.
+
+    price, resting: as of the cost.
+    """
+    cost = TrackingCost(motion.transcription, motion_target(motion), weights, price, resting)
     return cost.expand(motion.x)[1]
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..body.character import Character
 from ..body.kinematics import BodyPoint, Pose, forward_kinematics
 from ..data.constants import STANDARD_GRAVITY
@@ -39,7 +39,8 @@ class CostWeights:
     point's force across the target's direction. goes_on: whether the target goes on beyond both
     ends, so that markers must come back to it there. came_from: of the same before the first
     instant alone. damping: m², of what a step takes of the
-    joints' ranges, in the Hessian alone (Levenberg 1944), where joints have a price.
+    joints' ranges, in the Hessian alone (Levenberg 1944), where joints have a price. rest: of the
+    root's markers in the world where it rests on something.
     """
 
     position: float = 0.0
@@ -55,6 +56,10 @@ class CostWeights:
     goes_on: bool = False
     came_from: float = 0.0
     damping: float = 0.0
+    rest: float = 0.0
+
+
+MARKERS = 4  # of each body; the root's are the first
 
 
 def marker_points(character: Character) -> tuple[BodyPoint, ...]:
@@ -95,7 +100,8 @@ class _NodeErrors:
     values: basis values and second derivatives (N, 4). weight: (N,) s. world, shape: (N, M, 3) m,
     of markers, absolute and relative to the centre of mass. com: (N, 3) m. angles:
     (N, n_angles) rad. acceleration: (N, n_angles) rad/s². com_acceleration: (N, 3) m/s². turning:
-    (N, n_angles, n_angles) m²/rad², metric of the joint angles.
+    (N, n_angles, n_angles) m²/rad², metric of the joint angles. rest: (N,) weight of the root's
+    markers in the world.
     """
 
     values: list[FloatArray]
@@ -108,13 +114,15 @@ class _NodeErrors:
     acceleration: FloatArray
     com_acceleration: FloatArray
     turning: FloatArray
+    rest: FloatArray | None
 
 
 class TrackingCost:
     """Half the squared distance to a target, with gradient and Gauss-Newton Hessian.
 
     price: what turning joints costs beside, None nothing; that of the target's poses throughout.
-    Turns are counted as `by_range` and `damping` tell.
+    Turns are counted as `by_range` and `damping` tell. resting: (N,) nodes at which the pelvis
+    rests on something, where the weight `rest` keeps it.
     """
 
     def __init__(
@@ -123,6 +131,7 @@ class TrackingCost:
         target: TrackingTarget,
         weights: CostWeights,
         price: JointPrice | None = None,
+        resting: BoolArray | None = None,
     ) -> None:
         self.transcription = transcription
         self.target = target
@@ -140,6 +149,7 @@ class TrackingCost:
         self._price = np.broadcast_to(0.0, (len(times), n, n))
         if price is not None:
             self._price = price.metric(forward_kinematics(transcription.character, target.angles))
+        self._rest = None if resting is None or not resting.any() else weights.rest * resting
         time = weights.acceleration_time
         after = weights.position if weights.goes_on else 0.0
         ends = (after + weights.came_from, after)
@@ -173,6 +183,7 @@ class TrackingCost:
             acceleration=second[:, t.layout.angles] - target.accelerations[nodes],
             com_acceleration=second[:, t.layout.com] - target.com_acceleration[nodes],
             turning=self._by_range * self._price[nodes],
+            rest=None if self._rest is None else self._rest[nodes],
         )
 
     def value(self, x: FloatArray) -> float:
@@ -187,6 +198,8 @@ class TrackingCost:
             each = mean / len(self.points) + p.com * (at.com**2).sum(axis=1)
             moved = at.posed.point_rates(self.points, at.acceleration)
             each += self._smooth * self._marker_weight * (moved**2).sum(axis=(1, 2))
+            if at.rest is not None:
+                each += at.rest * (at.world[:, :MARKERS] ** 2).sum(axis=(1, 2)) / MARKERS
             each += _squares(at.turning, at.angles)
             each += self._smooth * _squares(at.turning, at.acceleration)
             each += self._load * (at.com_acceleration**2).sum(axis=1)
@@ -242,6 +255,8 @@ class TrackingCost:
         curvature = self._smooth * np.einsum("njk,nk->nj", angle, at.acceleration)
         first = self.transcription.basis.first_coefficient[spans]
         nodes = slice(GAUSS_NODES * spans.start, GAUSS_NODES * spans.stop)
+        if at.rest is not None:
+            self._expand_rest(at, at.rest, metric, slope)
         damping = p.damping * self._price[nodes]
         metric[:, angles, angles] += damping
         self._add_windows(at, metric, angle + damping, first, matrix)
@@ -253,6 +268,22 @@ class TrackingCost:
         summed = local.reshape(len(first), GAUSS_NODES, ORDER, n_motion).sum(axis=1)
         for k in range(ORDER):
             gradient[first + k, layout.motion] += summed[:, k]
+
+    def _expand_rest(
+        self, at: _NodeErrors, rest: FloatArray, metric: FloatArray, slope: FloatArray
+    ) -> None:
+        """Adds the root's markers in the world to metric (N, n, n) and gradient (N, n)."""
+        layout, root = self.transcription.layout, self.points[:MARKERS]
+        com, angles = layout.com, layout.angles
+        squares, turn = at.posed.points_metric(root)
+        share = rest / MARKERS
+        metric[:, angles, angles] += share[:, None, None] * squares
+        metric[:, com, angles] += share[:, None, None] * turn
+        metric[:, angles, com] += share[:, None, None] * np.swapaxes(turn, 1, 2)
+        metric[:, range(com.stop), range(com.stop)] += rest[:, None]
+        pull = share[:, None, None] * at.world[:, :MARKERS]
+        slope[:, angles] += at.posed.points_gradient(root, pull)
+        slope[:, com] += pull.sum(axis=1)
 
     def _add_windows(
         self,

@@ -11,7 +11,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from ..analysis.timeline import TimeWarp
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..constraints.constraint_builder import build_constraints
 from ..constraints.evaluation_context import EvaluationContext
 from ..data.contacts import ContactSchedule
@@ -38,6 +38,7 @@ from ..solid.solid_world import SolidWorld
 from ..transcription.motion import Motion
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
 from ..transcription.transcription import Transcription
+from ..unseen.resting import resting
 from .anticipation import anticipate
 from .footing import pin_turns
 from .requested import kept_intervals, requested, retimed_jumps, travel_at
@@ -84,7 +85,8 @@ class Setup:
 
     def metric_of(self, motion: Motion) -> BlockBanded:
         """Metric W of the minimum-norm steps from a motion of this problem."""
-        metric = motion_metric(motion, _cost_weights(self.requests), self.price)
+        rests = _resting(motion, self.schedule, self.fitted, self.target)
+        metric = motion_metric(motion, _cost_weights(self.requests), self.price, rests)
         if _weighs_torques(self.requests):
             metric.lower += torque_metric(motion, self.torques).lower
         return metric
@@ -153,8 +155,9 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     start = _with_constraints(start, problem, context)
     same = start.transcription.basis is fit.motion.transcription.basis and reference is fit.motion
     weights = _cost_weights(requests)
-    kept = same and weights is ADAPT_COST_WEIGHTS and price is not None
-    metric = fit.metric if kept else motion_metric(start, weights, price)
+    rests = _resting(start, context.schedule, asked.fitted, target)
+    kept = same and weights is ADAPT_COST_WEIGHTS and price is not None and not rests.any()
+    metric = fit.metric if kept else motion_metric(start, weights, price, rests)
     if _weighs_torques(requests):
         metric = metric.copy()
         metric.lower += _torque_metric(fit, start, same=same).lower
@@ -236,6 +239,13 @@ def _weighs_torques(requests: Requests) -> bool:
     """Whether changes of torques count in the metric of the steps: (q, tau, lambda), thesis 4.4."""
     solution = requests.solution
     return solution.method is not Method.IMPLICIT and solution.dynamics is not Dynamics.REDUCED
+
+
+def _resting(
+    motion: Motion, schedule: ContactSchedule, fitted: Standing, target: Standing
+) -> BoolArray:
+    """(N,) the dynamics nodes of a motion at which it rests on what stays where it was."""
+    return resting(schedule, fitted.moved_to(target), motion.transcription.node_times)
 
 
 def _cost_weights(requests: Requests) -> CostWeights:

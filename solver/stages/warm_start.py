@@ -20,6 +20,7 @@ from ..numerics.splines import dense_instants, greville_abscissae
 from ..transcription.motion import Motion
 from ..transcription.ride import Ride
 from ..transcription.transcription import Transcription
+from ..unseen.resting import MOVED, resting
 
 MAX_SHIFT_PER_STEP = 0.5  # m, of a continuation step
 MAX_SPEED_PER_STEP = 1.5  # m/s, by which a landing or a stance changes speed
@@ -28,7 +29,7 @@ LOWEST_SAMPLES = 50  # of a contact's height on moving ground
 TOGETHER = 0.05  # s, within which both feet leave, or come down
 UNEQUAL = 0.02  # m, by which a rigid move of all that stands may miss; toes bend, ground is uneven
 UNEQUAL_TURN = np.radians(1.0)  # of a foot to that move's, likewise; on, a way goes off by as much
-RIDE_RATE = 60.0  # Hz, at which the move of a stance on moving ground is sampled
+STANCE_RATE = 60.0  # Hz, at which a stance is sampled
 
 
 @dataclass(frozen=True)
@@ -72,6 +73,11 @@ class Standing:
 
     def with_places(self, places: FloatArray) -> "Standing":
         return Standing(places, self.rides)
+
+    def moved_to(self, after: "Standing") -> list[bool]:
+        """Of each contact, whether it stands elsewhere after, or rides."""
+        away = np.linalg.norm(after.places - self.places, axis=1) > MOVED
+        return [bool(a) or ride is not None for a, ride in zip(away, after.rides, strict=True)]
 
     def slowed(self, share: float, recorded: "Standing") -> "Standing":
         """On ground that moves at a share of its speed, but for what was recorded on it."""
@@ -150,22 +156,25 @@ def stance_moves(
     """Least-squares rigid move (planar Kabsch) of each stance's contacts.
 
     Grips and other contacts that were asked for move nothing: the arms reach for them (arm_ik.py).
+    Who rests on something stays on it, and reaches for where feet are moved to.
     wanted: turns of contacts, by names, rad. Places alone cannot tell a half turn left from one
     right, nor a whole turn from none; without a wish a stance is turned as the one before it ended.
     Of a single point they tell no turn at all: it is the one that is wished.
     """
     moves: list[RigidMove] = []
-    turned = 0.0
+    turned, goes = 0.0, before.moved_to(after)
     for stance in _stances(schedule):
         mine = [
             i
             for i, c in enumerate(schedule.contacts)
             if c.start < stance.end and c.end > stance.start and not c.asked_for
         ]
-        times = np.array([stance.start])
-        if any(standing.rides[i] is not None for standing in (before, after) for i in mine):
-            count = 2 + int(RIDE_RATE * (stance.end - stance.start))
-            times = np.linspace(stance.start, stance.end, count)
+        sampled = 2 + int(STANCE_RATE * (stance.end - stance.start))
+        times = np.linspace(stance.start, stance.end, sampled)
+        if resting(schedule, goes, times).any():
+            mine = [i for i in mine if not goes[i]]
+        if all(standing.rides[i] is None for standing in (before, after) for i in mine):
+            times = times[:1]
         turns = ((wanted or {}).get(schedule.contacts[i].name, 0.0) for i in mine)
         wish = max(turns, key=abs)
         asked = turned + wish

@@ -36,6 +36,7 @@ COST_WEIGHTS = {
         force=0.02,
         force_rate_time=0.1,
         friction=0.05,
+        rest=3.0,
     ),
 }
 
@@ -49,9 +50,12 @@ def priced() -> JointPrice:
 
 
 def cost_of(name: str, target: TrackingTarget) -> TrackingCost:
-    """The cost with weights by name; an adaptation's has a price of turning joints."""
+    """The cost with weights by name; an adaptation's has a price of turning joints, and who has all
+    weights rests in the first half."""
     price = priced() if name == "adaptation" else None
-    return TrackingCost(standing(), target, COST_WEIGHTS[name], price)
+    times = standing().node_times
+    resting = times < times.mean() if name == "all" else None
+    return TrackingCost(standing(), target, COST_WEIGHTS[name], price, resting)
 
 
 def at_itself(x: np.ndarray) -> TrackingTarget:
