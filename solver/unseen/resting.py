@@ -21,4 +21,4 @@ def resting(schedule: ContactSchedule, moved: Sequence[bool], times: FloatArray)
     for contact, goes in zip(schedule.contacts, moved, strict=True):
         if not goes:
             stays |= (times >= contact.start) & (times <= contact.end)
-    return carried & stays
+    return np.asarray(carried & stays)
