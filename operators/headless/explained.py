@@ -11,7 +11,7 @@ from pathlib import Path
 from ...bridge.recipe.contacts import added_texts
 from ...bridge.recipe.object_texts import support_texts
 from ...bridge.recipe.problem import locate, read_recipe_text
-from ...solver.data.faults import BadRecipe, Fault, UnseenSupport
+from ...solver.data.faults import BadRecipe, Fault, OffBalance, UnseenSupport
 from ..words.messages import recipe_place, sentence
 
 WRONG_INPUT = 2
@@ -21,13 +21,19 @@ CANCELLED = 130
 
 def explained(fault: Fault, recipe: Path | None) -> str:
     """The fault in words, with the recipe's line where one is to blame, or lines to add to it."""
-    if isinstance(fault, UnseenSupport) and (fault.boxes or fault.hands):
-        remedies = [*support_texts(fault.boxes), *added_texts(fault.hands)]
+    if remedies := _remedies(fault):
         return "\n\n".join([sentence(fault), *remedies]).rstrip()
     if recipe is None or isinstance(fault, BadRecipe):
         return sentence(fault)
     line = locate(read_recipe_text(recipe), fault)
     return sentence(fault) if line is None else f"{recipe_place(recipe, line)}: {sentence(fault)}"
+
+
+def _remedies(fault: Fault) -> list[str]:
+    """What carries the body, as a recipe has it, where that is told."""
+    if isinstance(fault, UnseenSupport):
+        return [*support_texts(fault.boxes), *added_texts(fault.hands)]
+    return added_texts(fault.hands) if isinstance(fault, OffBalance) else []
 
 
 @contextmanager

@@ -13,7 +13,7 @@ from ...solver.analysis.analyse import Analysis
 from ...solver.analysis.pinned_places import backward_stances
 from ...solver.contacts.footfalls import footfalls, takes_steps
 from ...solver.data.contacts import Contact, Phase, PhaseKind
-from ...solver.data.faults import UnseenSupport
+from ...solver.data.faults import OffBalance, UnseenSupport
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
 from ...solver.doctor.repairs import Repairs
@@ -47,7 +47,8 @@ def _unseen(analysis: Analysis) -> list[str]:
     told = [sentence(each) for each in together(analysis.unseen)]
     unseen = [each for each in analysis.unseen if isinstance(each, UnseenSupport)]
     boxes = [box for each in unseen for box in each.boxes]
-    hands = dict.fromkeys(contact for each in unseen for contact in each.hands)
+    leaning = (e for e in analysis.unseen if isinstance(e, UnseenSupport | OffBalance))
+    hands = dict.fromkeys(contact for each in leaning for contact in each.hands)
     return ["", *told, *support_texts(boxes), *added_texts(hands)] if told else []
 
 

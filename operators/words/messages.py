@@ -96,6 +96,8 @@ def _variant(fault: Fault) -> int:
             carrying = fault.leaning, bool(fault.boxes), bool(fault.hands), fault.rate is not None
             mistaken = fault.exchanged, fault.skidding, fault.lying, fault.resting
             return max(i for i, each in enumerate((True, *carrying, *mistaken)) if each)
+        case faults.OffBalance():
+            return 2 if fault.hands else bool(fault.resting)
         case faults.UnseenSupports():
             return fault.leaning
         case faults.NoFaceThere():

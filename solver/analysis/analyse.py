@@ -9,7 +9,7 @@ track = adaptation.motion.track(analysis.performance.recording)
 """
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -38,11 +38,20 @@ from ..data.faults import (
 from ..data.problem import AddedContact, MotionProblem, Unseen
 from ..data.recording import MIN_CLIP_DURATION, Recording, Skin
 from ..data.scene import SupportBox
+from ..numerics.runs import runs
 from ..scene.belt import belt_speed
 from ..scene.fall_rate import fitting_rate, is_pulled_down
 from ..scene.support import boxes_beneath
 from ..unseen.free_fall import falls_beside_unseen, unseen_support
-from .balance import SURELY_LASTS, off_balance
+from .balance import (
+    SURELY_LASTS,
+    lasting,
+    low_palms,
+    off_balance,
+    palms_at_rest,
+    pelvis_at_rest,
+    touches_during,
+)
 from .grounding import disjoint, foot_sized, grounded, parted
 from .performance import (
     Performance,
@@ -160,7 +169,7 @@ def _told(
         hands: tuple[AddedContact, ...] = ()
         leaning = _leans(performance, gap, floor_m)
         if leaning:
-            hands = _hands(performance, schedule, gap)
+            hands = _hands(performance, schedule, gap, low_palms(performance))
         elif rate is None:
             boxes = boxes_beneath(performance.times, points, gap, floor_m)
         on_floor = rate is None and not boxes and gap in low
@@ -173,35 +182,53 @@ def _told(
 
 
 def _off_balance(performance: Performance, schedule: ContactSchedule) -> Iterator[OffBalance]:
-    """Where the weight is beside what touches for so long that it is no fault of the capture."""
-    recording = performance.recording
+    """Where the weight is beside what touches for so long that it is no fault of the capture: on
+    hands, with their contacts, and else, with when the pelvis rests. Who sits on the floor has
+    hands on it that carry little."""
     found = off_balance(performance, schedule, SURELY_LASTS)
-    if found:
-        yield OffBalance(
-            tuple((_frame(recording, each.start), _frame(recording, each.end)) for each in found)
-        )
+    palms = palms_at_rest(performance)
+    still, low = pelvis_at_rest(performance)
+
+    def hands(gap: Interval) -> tuple[AddedContact, ...]:
+        sits = (still & low)[_inside(performance, gap)].mean() > LEANING_SHARE
+        return () if sits else _hands(performance, schedule, gap, palms)
+
+    added = {gap: hands(gap) for gap in found}
+    leaning, others = ([gap for gap in found if bool(added[gap]) is on] for on in (True, False))
+    if leaning:
+        contacts = dict.fromkeys(contact for gap in leaning for contact in added[gap])
+        yield OffBalance(_spans(performance, leaning), tuple(contacts))
+    if others:
+        rests = [part for gap in others for part in lasting(performance, still, gap)]
+        yield OffBalance(_spans(performance, others), resting=_spans(performance, rests))
+
+
+def _spans(
+    performance: Performance, intervals: Iterable[Interval]
+) -> tuple[tuple[float, float], ...]:
+    """Scene frames."""
+    recording = performance.recording
+    return tuple((_frame(recording, each.start), _frame(recording, each.end)) for each in intervals)
 
 
 def _hands(
-    performance: Performance, schedule: ContactSchedule, gap: Interval
+    performance: Performance,
+    schedule: ContactSchedule,
+    gap: Interval,
+    down: Mapping[str, BoolArray],
 ) -> tuple[AddedContact, ...]:
-    """The contacts of hands that would carry the body through a gap, by their height alone: palms
-    that a body vaults over roll too fast for contacts to be found. None where they do not last."""
-    points, floor_m = contact_points(performance)
-    frames, inside = performance.recording.frames, _inside(performance, gap)
+    """The contacts of hands that would carry the body through a gap beside those that are known.
+    None where they do not last. down: (T,) by hand, when it is on the floor."""
+    times, frames = performance.times, performance.recording.frames
+    inside = _inside(performance, gap)
     carried, found = np.zeros_like(inside), list[AddedContact]()
-    for name, point in points.items():
-        if point.kind is not PointKind.HAND:
-            continue
-        low = np.flatnonzero(point.track[:, 2] - floor_m < point.kind.value.max_height)
-        for run in np.split(low, np.flatnonzero(np.diff(low) > 1) + 1) if len(low) else ():
-            start, end = performance.times[run[[0, -1]]]
-            beside = (c for c in schedule.contacts if c.start < end and c.end > start)
-            known = any(contact.point == name for contact in beside)
-            lasts = end - start >= point.kind.value.min_duration
-            if lasts and not known and inside[run].any():
+    for name, low in down.items():
+        for first, last in runs(low & ~touches_during(times, schedule, name)):
+            run = slice(first, last + 1)
+            lasts = times[last] - times[first] >= PointKind.HAND.value.min_duration
+            if lasts and inside[run].any():
                 carried[run] = True
-                found.append(AddedContact(name, float(frames[run[0]]), float(frames[run[-1]])))
+                found.append(AddedContact(name, float(frames[first]), float(frames[last])))
     return tuple(found) if carried[inside].mean() >= LOW_SHARE else ()
 
 

@@ -2,23 +2,26 @@
 weight on something else: the zero-moment point (Vukobratović & Borovac 2004), where one force that
 gave the body its recorded movement would meet the ground, is then beside the feet."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
 from ..body.dynamics import MomentFunction
 from ..data.constants import STANDARD_GRAVITY, UP
-from ..data.contacts import ContactSchedule, Interval
+from ..data.contacts import ContactSchedule, Interval, PointKind
 from ..numerics.local_regression import derivative
 from ..numerics.runs import runs
 from ..unseen.support_force import HAND_OVER
 from .accelerations import SMOOTHING_FRAMES
-from .performance import Performance, contact_points
+from .performance import LEANING, Performance, contact_points
 
 BESIDE = 0.1  # m from what touches: half a foot's breadth, and as much by which masses err
 LASTS = 0.2  # s; walks, runs and jumps have up to 0.13, a hop that lands on one foot's toes 0.3
 SURELY_LASTS = 0.5  # s; longer than these, and than what joints that tremble by 9 mm make of it
 SMOOTHING = 0.06  # s, standard deviation; who leans does so for longer
 LOADED = 0.3  # body weights, upwards; a smaller force meets the ground anywhere
+STILL = 0.1  # m/s; slower is the pelvis of who sits, or stands and leans
 _AROUND = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
 _WAYS = np.stack([np.cos(_AROUND), np.sin(_AROUND)])  # (2, W) unit vectors along the ground
 
@@ -41,7 +44,7 @@ def _beside(performance: Performance, schedule: ContactSchedule) -> FloatArray:
     """(T,) m, how far the zero-moment point is outside the hull of what touches; 0 where nothing
     does, or something unseen may carry."""
     times, (points, _) = performance.times, contact_points(performance)
-    touching = np.array([_during(times, schedule, name) for name in points])
+    touching = np.array([touches_during(times, schedule, name) for name in points])
     tracks = np.array([point.track for point in points.values()])
     known = touching.any(axis=0)
     for unseen in schedule.unseen:
@@ -55,7 +58,7 @@ def _beside(performance: Performance, schedule: ContactSchedule) -> FloatArray:
     return np.where(loaded, beyond, 0.0)
 
 
-def _during(times: FloatArray, schedule: ContactSchedule, point: str) -> BoolArray:
+def touches_during(times: FloatArray, schedule: ContactSchedule, point: str) -> BoolArray:
     """(T,) whether a point touches."""
     touches = np.zeros(len(times), dtype=np.bool_)
     for contact in schedule.contacts:
@@ -81,3 +84,47 @@ def _zero_moment_point(
     ahead = -(moment[:, 1] + high * force[:, 0]) / up
     aside = (moment[:, 0] - high * force[:, 1]) / up
     return performance.com[:, :2] + np.stack([ahead, aside], axis=1), loaded
+
+
+def palms_at_rest(performance: Performance) -> dict[str, BoolArray]:
+    """(T,) each, by hand, whether its palm is as near to the floor as where a body leans on it, and
+    does not slide along it: contacts, which are sought where nothing is amiss, ask for more."""
+    points, floor_m = contact_points(performance)
+    high = floor_m + LEANING * performance.character.height
+    return {
+        name: (point.track[:, 2] < high)
+        & (_speed(performance, point.track[:, :2]) < PointKind.HAND.value.max_slip_speed)
+        for name, point in points.items()
+        if point.kind is PointKind.HAND
+    }
+
+
+def low_palms(performance: Performance) -> dict[str, BoolArray]:
+    """(T,) each, by hand, whether its palm is as low as one that touches, however it moves: palms
+    that a body vaults over roll too fast for contacts to be found."""
+    points, floor_m = contact_points(performance)
+    hands = ((name, p) for name, p in points.items() if p.kind is PointKind.HAND)
+    return {name: p.track[:, 2] - floor_m < p.kind.value.max_height for name, p in hands}
+
+
+def pelvis_at_rest(performance: Performance) -> tuple[BoolArray, BoolArray]:
+    """(T,) each, whether the pelvis is still, and whether it is as near to the floor as where the
+    body sits or lies on it."""
+    track, (_, floor_m) = performance.centres[:, 0], contact_points(performance)
+    low = track[:, 2] - floor_m < LEANING * performance.character.height
+    return _speed(performance, track) < STILL, np.asarray(low)
+
+
+def lasting(performance: Performance, mask: BoolArray, gap: Interval) -> Iterator[Interval]:
+    """The parts of a gap in which something (T,) is true for as long as who surely leans does."""
+    times = performance.times
+    for first, last in runs(mask & (times >= gap.start) & (times <= gap.end)):
+        if times[last] - times[first] >= SURELY_LASTS:
+            yield Interval(float(times[first]), float(times[last]))
+
+
+def _speed(performance: Performance, track: FloatArray) -> FloatArray:
+    """(T,) m/s, of a track (T, n) m."""
+    width = max(SMOOTHING, SMOOTHING_FRAMES / performance.recording.rate)
+    speeds = derivative(performance.times, track, performance.times, width, 1)
+    return np.asarray(np.linalg.norm(speeds, axis=1))

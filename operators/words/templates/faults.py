@@ -214,9 +214,20 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
         "there, so something unseen carries it; where it is hands, let them touch (Add Contact, "
         "the + beside the contacts of a stance, or an [[add_contact]] in a recipe).",
     ),
-    faults.OffBalance: "In frames {spans:spans} the weight is beside the feet, as of who sits or "
-    "leans, so something unseen carries it in the fit. To have a chair or a wall carry it in the "
-    "result, give the pelvis, or the hand that leans, a Point with Pushes Back in these frames.",
+    faults.OffBalance: (
+        "In frames {spans:spans} the weight is beside the feet, as of who sits or leans, so "
+        "something unseen carries it in the fit. To have a chair or a wall carry it in the result, "
+        "give the pelvis, or the hand that leans, a Point with Pushes Back in the frames in which "
+        "it rests there.",
+        "In frames {spans:spans} the weight is beside the feet, as of who sits or leans, so "
+        "something unseen carries it in the fit. To have a chair, a wall or the floor carry it in "
+        "the result, give the pelvis, which rests in frames {resting:spans}, or the hand that "
+        "leans, a Point with Pushes Back there.",
+        "In frames {spans:spans} the weight is beside the feet, for hands are on the ground, whose "
+        "contacts are not found, so something unseen carries it in the fit. Let them touch "
+        "({hands:contacts}): Add Contact, the + beside the contacts of a stance, or an "
+        "[[add_contact]] in a recipe.",
+    ),
     faults.FitNeedsSupport: "No motion comes near the recording unless something unseen carries "
     "the body in frames {spans:spans}, which the recipe refuses; correct the frames of the "
     "contacts there, add what does carry it (a contact, or an [[object]] that is ground), choose "

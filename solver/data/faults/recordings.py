@@ -312,9 +312,12 @@ class UnseenSupports(Fault):
 @dataclass
 class OffBalance(Fault):
     """Feet touch, but the weight is beside them in spans (first, last frame), as of who sits or
-    leans: a hint, as the fit tells what that takes."""
+    leans: a hint, as the fit tells what that takes. hands: the contacts of those on the floor, that
+    would carry it. resting: the spans within these in which the pelvis is still."""
 
     spans: tuple[tuple[float, float], ...]
+    hands: tuple[AddedContact, ...] = ()
+    resting: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass
