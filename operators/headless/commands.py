@@ -16,6 +16,7 @@ from ...bridge.recipe.result import ResultOptions
 from ...solver.data.faults import BadRecipe, Fault, NoSolution, OptionNotTaken
 from ...solver.data.problem import MotionProblem
 from ...solver.doctor.repairs import Repairs
+from ...solver.results.unseen_support import hints_left
 from ...solver.worker.pipeline import solve
 from ..words.analysis_text import analysis_text, starter_recipe
 from ..words.headline import headline
@@ -190,7 +191,9 @@ def adapt(options: argparse.Namespace) -> None:
         report = outputs.write(picture=not options.no_picture)
         files = outbox.deliver()
     total = f"{'Total':<{WIDTH}}{stages.total:6.1f} s"
-    advice = [explained(each, None) for each in together(loaded.subject.analysis.unseen)]
+    told = loaded.subject.analysis.unseen
+    left = hints_left(told, report, result.schedule, result.recording)
+    advice = [explained(each, None) for each in together(left)]
     print(total, *headline(report), *warning_lines(report), *advice, "Written:", sep="\n")
     for path in files:
         print(f"  {path}")

@@ -6,7 +6,13 @@ from collections.abc import Sequence
 from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.faults import NoFit, NoSolution
 from ...solver.data.reports.certificate import CertificateItem, CertificateLine
-from ...solver.data.reports.constraints import AcceptedReport, ConstraintReport, FitNeeds
+from ...solver.data.reports.constraints import (
+    CARRIES,
+    AcceptedReport,
+    ConstraintReport,
+    FitNeeds,
+    UnseenSupportReport,
+)
 from ...solver.data.reports.jumps import PhaseReport
 from ...solver.data.reports.keys import BlendReport, BodyMiss, MissedContact
 from ...solver.data.reports.report import FitQuality, Report
@@ -34,6 +40,10 @@ _BESIDE_A_STAND = {  # by whether the blend leads in
     True: "Begin the range before it comes down",
     False: "End the range when it has left",
 }
+WHAT_CARRIES = (
+    "where hands do, let them touch (Add Contact); where a chair or a wall does, give what rests "
+    "on it a Point with Pushes Back; where feet stand on something, let it be ground (World)"
+)
 # What may be done about keys that do not show what was solved.
 SAME_SCALE = (
     "Lengths change with the scale of {}: make it one number, for all axes and at all frames"
@@ -167,15 +177,36 @@ def nearness(fit: FitQuality) -> str:
     return f"{said}; worst {worst}, frame {fit.worst_joint_frame:.0f}"
 
 
+def unseen_lines(found: Sequence[UnseenSupportReport]) -> list[str]:
+    """Where something unseen carries the body, with what may be done, and where it only turns it:
+    lines."""
+    carried, turned = ([u for u in found if (u.force_bw > CARRIES) is on] for on in (True, False))
+    lines = []
+    if carried:
+        spans = ", ".join(
+            f"{_frames_of(each)} ({plain(each.mean_bw)}, {plain(each.force_bw)})"
+            for each in carried
+        )
+        amounts = "by body weights, on average and at most"
+        told = f"Something unseen carries the body in frames ({amounts}) {spans}"
+        lines.append(f"{told}; {WHAT_CARRIES}")
+    if turned:
+        most = plain(max(each.moment_bw_m for each in turned))
+        spans = ", ".join(map(_frames_of, turned))
+        lines.append(
+            "Something unseen turns the body, but carries nothing of it, by up to "
+            f"{most} body weights × metre in frames {spans}"
+        )
+    return lines
+
+
+def _frames_of(each: UnseenSupportReport) -> str:
+    return f"{each.first_frame:.0f} to {each.last_frame:.0f}"
+
+
 def accepted_lines(needs: FitNeeds) -> list[str]:
     """What the motion needs beside what the recording shows, all frames at once: lines."""
-    lines = []
-    if needs.unseen_support:
-        spans = ", ".join(
-            f"{each.first_frame:.0f} to {each.last_frame:.0f} ({plain(each.force_bw)})"
-            for each in needs.unseen_support
-        )
-        lines.append(f"Something unseen carries the body in frames (by body weights) {spans}")
+    lines = unseen_lines(needs.unseen_support)
     lines += [
         f"In the flight that was found from frame {each.first_frame:.0f} to {each.last_frame:.0f} "
         f"the body falls at {each.acceleration:.1f} m/s², up to {length(each.off_mm / 1000.0)} off "

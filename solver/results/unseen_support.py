@@ -1,33 +1,42 @@
 """What the report tells of what carries the body unseen, and of contacts that were let go."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from ..analysis.balance import SURELY_LASTS
+from ..arrays import BoolArray, FloatArray
 from ..data.constants import STANDARD_GRAVITY, UP
-from ..data.contacts import Interval
-from ..data.faults import FitNeedsSupport
+from ..data.contacts import ContactSchedule, Interval
+from ..data.faults import CarriedBy, FitNeedsSupport, OffBalance
 from ..data.problem import MotionProblem, Unseen
+from ..data.recording import Recording
 from ..data.reports.constraints import (
+    CARRIES,
     AcceptedReport,
     CarriedFlightReport,
     FitNeeds,
     LetGoReport,
     UnseenSupportReport,
 )
+from ..data.reports.report import Report
 from ..fitting.fit import Fit
+from ..numerics.runs import runs
 from ..transcription.motion import Motion, pinned_instants
 from ..unseen.free_fall import clear_falls
 from .flight_summary import scene_frame
 
 SAMPLE_RATE = 500.0  # Hz
-CARRIES = 0.05  # body weights; less is within the error of forces that are told from recordings
 LEAST_FRAMES = 4  # that tell an acceleration
 APART = 0.1  # s; what is nearer is one interval
 
+Span = tuple[float, float]  # first and last frame
+
 
 def unseen_support(fit: Fit, motion: Motion) -> Iterator[UnseenSupportReport]:
-    """The intervals of a motion in which something unseen carries the body."""
+    """The intervals of a motion in which something unseen carries the body, and those beside them
+    in which it does no more than turn it."""
     t = motion.transcription
     if t.support is None:
         return
@@ -37,17 +46,83 @@ def unseen_support(fit: Fit, motion: Motion) -> Iterator[UnseenSupportReport]:
     arms = motion.pose(times).points(t.points[-t.n_support :])
     moment = np.cross(arms - arms.mean(axis=1, keepdims=True), each).sum(axis=1)
     sizes, moments = (np.linalg.norm(v, axis=1) for v in (each.sum(axis=1), moment))
-    busy = np.flatnonzero(np.linalg.norm(each, axis=2).sum(axis=1) > CARRIES)
-    breaks = np.flatnonzero(np.diff(times[busy]) > APART) + 1
-    for part in np.split(busy, breaks) if len(busy) else ():
-        peak = part[sizes[part].argmax()]
+    acts = np.linalg.norm(each, axis=2).sum(axis=1) > CARRIES
+    for first, last in _intervals(times, sizes > CARRIES, acts):
+        part = slice(first, last + 1)
+        peak = first + int(sizes[part].argmax())
         yield UnseenSupportReport(
-            first_frame=scene_frame(fit, float(times[part[0]])),
-            last_frame=scene_frame(fit, float(times[part[-1]])),
+            first_frame=scene_frame(fit, float(times[first])),
+            last_frame=scene_frame(fit, float(times[last])),
             force_bw=float(sizes[peak]),
             peak_frame=scene_frame(fit, float(times[peak])),
             moment_bw_m=float(moments[part].max()),
+            mean_bw=float(sizes[part].mean()),
         )
+
+
+def _intervals(times: FloatArray, carries: BoolArray, acts: BoolArray) -> list[tuple[int, int]]:
+    """First and last index of each interval in which something (T,) carries, and of those between
+    them in which it acts all the same, in order. What is nearer than APART is one, and so long a
+    one between is at least: a force that rises or fades acts before it carries."""
+    carried, turned = _joined(times, carries), acts.copy()
+    for first, last in carried:
+        turned[first : last + 1] = False
+    lasting = [(a, b) for a, b in _joined(times, turned) if times[b] - times[a] > APART]
+    return sorted([*carried, *lasting])
+
+
+def _joined(times: FloatArray, mask: BoolArray) -> list[tuple[int, int]]:
+    """The runs of a mask (T,), those in one that are nearer than APART."""
+    joined: list[tuple[int, int]] = []
+    for first, last in runs(mask):
+        near = bool(joined) and times[first] - times[joined[-1][1]] <= APART
+        joined.append((joined.pop()[0] if near else first, last))
+    return joined
+
+
+def hints_left(
+    told: Sequence[CarriedBy], result: Report, schedule: ContactSchedule, recording: Recording
+) -> list[CarriedBy]:
+    """What an analysis told of a recording, of weight beside the feet no more than where a result
+    still has something unseen carry it, and no point of the artist's.
+
+    schedule: the result's. Frames stay the recording's, by which points and contacts are asked for.
+    """
+    frames, rate = recording.frames, recording.rate
+    carried = [(u.first_frame, u.last_frame) for u in result.unseen_support if u.force_bw > CARRIES]
+    points = [
+        (frames[0] + rate * c.start, frames[0] + rate * c.end)
+        for c in schedule.contacts
+        if c.asked_for
+    ]
+    left = _during(frames, _as_recorded(carried, result)) & ~_during(
+        frames, _as_recorded(points, result)
+    )
+
+    def cut(spans: Sequence[Span]) -> tuple[Span, ...]:
+        some = runs(_during(frames, spans) & left)
+        lasting = ((frames[a], frames[b]) for a, b in some if b - a >= SURELY_LASTS * rate)
+        return tuple((float(first), float(last)) for first, last in lasting)
+
+    hints = (
+        replace(e, spans=cut(e.spans), resting=cut(e.resting)) if isinstance(e, OffBalance) else e
+        for e in told
+    )
+    return [hint for hint in hints if not isinstance(hint, OffBalance) or hint.spans]
+
+
+def _as_recorded(spans: Sequence[Span], result: Report) -> list[Span]:
+    """A result's frames in the recording's."""
+    corners = result.times.adapted_frame, result.times.recorded_frame
+    return [(float(first), float(last)) for first, last in (np.interp(s, *corners) for s in spans)]
+
+
+def _during(frames: FloatArray, spans: Sequence[Span]) -> BoolArray:
+    """(T,) which frames are in one of some spans."""
+    inside = np.zeros(len(frames), dtype=np.bool_)
+    for first, last in spans:
+        inside |= (frames >= first) & (frames <= last)
+    return inside
 
 
 def refuse_unseen(problem: MotionProblem, fit: Fit) -> None:

@@ -6,6 +6,8 @@ from ..requests import Vector
 from ..row_kinds import RowKind
 from .omission import OMIT_NONE
 
+CARRIES = 0.05  # body weights; less is within the error of forces that are told from recordings
+
 
 @dataclass(frozen=True)
 class PinReport:
@@ -81,13 +83,15 @@ class MovingGroundReport:
 @dataclass(frozen=True)
 class UnseenSupportReport:
     """Something that the recording does not show carries the body. At its largest: force_bw, body
-    weights, at peak_frame; moment_bw_m about the pelvis, body weights x m."""
+    weights, at peak_frame; moment_bw_m about the pelvis, body weights x m. mean_bw: of the force.
+    """
 
     first_frame: float
     last_frame: float
     force_bw: float
     peak_frame: float
     moment_bw_m: float
+    mean_bw: float
 
 
 @dataclass(frozen=True)

@@ -23,15 +23,26 @@ from hangtime.tests.helpers.fitted_hop import fitted_hop
 def test_all_frames_of_unseen_support_and_all_contacts_let_go_are_told() -> None:
     needs = FitNeeds(
         (
-            UnseenSupportReport(1.0, 41.0, 4.74, 13.0, 0.1),
-            UnseenSupportReport(58.0, 115.0, 1.36, 111.0, 0.3),
+            UnseenSupportReport(1.0, 41.0, 4.74, 13.0, 0.1, 2.5),
+            UnseenSupportReport(58.0, 115.0, 1.36, 111.0, 0.3, 0.7),
         ),
         (LetGoReport("Right heel 2", 29.0, 74.0, 66.0),),
     )
     support, contacts = accepted_lines(needs)
-    assert "1 to 41 (4.74), 58 to 115 (1.36)" in support
+    assert "on average and at most) 1 to 41 (2.5, 4.74), 58 to 115 (0.7, 1.36); " in support
+    assert "Point with Pushes Back" in support
     assert "Right heel 2" in contacts
     assert accepted_lines(FitNeeds()) == []
+
+
+def test_what_turns_the_body_and_carries_nothing_of_it_is_told_by_itself() -> None:
+    seat = UnseenSupportReport(1.0, 138.0, 0.005, 130.0, 0.118, 0.001)
+    rises = UnseenSupportReport(139.0, 189.0, 0.94, 152.0, 0.09, 0.62)
+    carries, turns = accepted_lines(FitNeeds((seat, rises)))
+    assert "139 to 189 (0.62, 0.94)" in carries
+    assert "1 to 138" not in carries
+    assert turns.startswith("Something unseen turns the body, but carries nothing of it")
+    assert turns.endswith("0.118 body weights × metre in frames 1 to 138")
 
 
 def test_a_flight_that_something_unseen_carries_is_told_with_how_it_falls() -> None:

@@ -54,7 +54,8 @@ def with_palms(recording: Recording, height: float, speed: float = 0.0) -> Recor
         palm = points[f"{side} hand"]
         down = floor_m + height - palm.track[0, 2]
         hand = recording.index(palm.bone)
-        heads[:, hand] += [0.0, -0.3, down] + np.outer(recording.times, [speed, 0.0, 0.0])
+        heads[:, hand] += [0.0, -0.3, down]
+        heads[:, hand, 0] += speed * recording.times
     return replace(recording, heads=heads)
 
 

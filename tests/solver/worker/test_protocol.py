@@ -160,7 +160,7 @@ MOVED = StanceMove("ground 2", (1.0, 0.0, 0.0), 0.5, (0.3, 0.0, 0.0))
 REPAIRS = Repairs(UpAxis.Y, 1, (Mend.NOISE,), 0.8, 2.0, (0.1, 0.0), 0.2)
 FINDING = Finding(FindingKind.SPIKE, 30.0, "°", ((2.0, 2.0),), "arm", REPAIRS)
 FOOT = FootFault(FootFaultKind.SINKS, "Left toe", "toe.L", (0.0, 0.1, 0.0), 1.0, 4.0, 0.05)
-SUPPORT = UnseenSupportReport(1.0, 4.0, 0.5, 2.0, 0.1)
+SUPPORT = UnseenSupportReport(1.0, 4.0, 0.5, 2.0, 0.1, 0.3)
 LET_GO = LetGoReport("Left toe 1", 1.0, 4.0, 12.0)
 MESSAGES: tuple[Message, ...] = (
     Hello(PROTOCOL, ("somewhere",)),

@@ -1,0 +1,53 @@
+"""What an analysis told of weight beside the feet is told of a result as far as it holds there."""
+
+from dataclasses import replace
+
+from hangtime.solver.data.faults import OffBalance, UnseenSupport
+from hangtime.solver.data.problem import AddedContact, MotionProblem
+from hangtime.solver.data.reports.constraints import UnseenSupportReport
+from hangtime.solver.data.reports.recording import Origin
+from hangtime.solver.data.reports.report import Report
+from hangtime.solver.results.report import report
+from hangtime.solver.results.unseen_support import hints_left
+from hangtime.solver.stages.implicit import adapt
+from hangtime.tests.helpers.fitted_hop import fitted_hop
+
+ADAPTATION = adapt(fitted_hop(), MotionProblem())
+RECORDING, SCHEDULE = ADAPTATION.setup.recording, ADAPTATION.setup.schedule
+FIRST, LAST = RECORDING.ends
+
+
+def carried(first: float, last: float, force: float = 0.8) -> Report:
+    made = report(ADAPTATION, MotionProblem(), Origin("hop"))
+    return replace(
+        made, unseen_support=(UnseenSupportReport(first, last, force, first, 0.2, 0.6 * force),)
+    )
+
+
+def test_what_the_fit_carries_by_feet_alone_is_not_told_again() -> None:
+    told = OffBalance(((FIRST, LAST),))
+    stands = replace(carried(FIRST, LAST), unseen_support=())
+    turned = carried(FIRST, LAST, force=0.01)
+    for each in (stands, turned):
+        assert hints_left([told], each, SCHEDULE, RECORDING) == []
+    aloft = UnseenSupport(FIRST, LAST)
+    assert hints_left([aloft, told], stands, SCHEDULE, RECORDING) == [aloft]
+
+
+def test_a_hint_is_told_where_something_unseen_carries() -> None:
+    half = round((FIRST + LAST) / 2.0)
+    hands = (AddedContact("Left hand", FIRST, LAST),)
+    told = OffBalance(((FIRST, LAST),), hands, ((FIRST, LAST),))
+    (left,) = hints_left([told], carried(half, LAST), SCHEDULE, RECORDING)
+    assert isinstance(left, OffBalance)
+    assert left.spans == left.resting == ((half, LAST),)
+    assert left.hands == hands
+
+
+def test_a_hint_is_not_told_where_a_point_pushes_back() -> None:
+    touch = SCHEDULE.contacts[0]
+    seat = replace(touch, name="Seat", point="Seat", start=0.0, end=SCHEDULE.duration)
+    seated = replace(SCHEDULE, contacts=(*SCHEDULE.contacts, seat))
+    told = OffBalance(((FIRST, LAST),))
+    assert hints_left([told], carried(FIRST, LAST), SCHEDULE, RECORDING) == [told]
+    assert hints_left([told], carried(FIRST, LAST), seated, RECORDING) == []
