@@ -30,6 +30,8 @@ from ..data.faults import (
     ClipTooShort,
     FramesFarApart,
     FramesReversed,
+    Hint,
+    KneesRest,
     OffBalance,
     Treadmill,
     UnknownContactName,
@@ -45,6 +47,7 @@ from ..scene.support import boxes_beneath
 from ..unseen.free_fall import falls_beside_unseen, unseen_support
 from .balance import (
     SURELY_LASTS,
+    kneels,
     lasting,
     low_palms,
     off_balance,
@@ -77,8 +80,8 @@ class Analysis:
     """Result of an analysis: the character's movement and its contacts.
 
     unseen: what was found where something unseen carries the body, one for each interval of the
-    schedule; of feet that slide steadily one for all. After that, where the weight is beside what
-    touches, which is no more than a hint.
+    schedule; of feet that slide steadily one for all. After that, no more than hints, where the
+    weight is beside what touches, and where knees rest on the floor.
     """
 
     performance: Performance
@@ -117,7 +120,7 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     told = tuple(_told(performance, schedule, skids))
     if told and problem.unseen is Unseen.REFUSE:
         raise told[0]
-    return Analysis(performance, schedule, (*told, *_off_balance(performance, schedule)))
+    return Analysis(performance, schedule, (*told, *_hints(performance, schedule)))
 
 
 def _performed(
@@ -179,6 +182,13 @@ def _told(
             skidding=on_floor and gap in slid,
             resting=on_floor and gap not in slid,
         )
+
+
+def _hints(performance: Performance, schedule: ContactSchedule) -> Iterator[Hint]:
+    """What may carry the body, as the fit tells, beside what surely does."""
+    yield from _off_balance(performance, schedule)
+    if knees := kneels(performance):
+        yield KneesRest(_spans(performance, knees))
 
 
 def _off_balance(performance: Performance, schedule: ContactSchedule) -> Iterator[OffBalance]:

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from ...analysis.analyse import skids_in
-from ...analysis.balance import SURELY_LASTS, off_balance
+from ...analysis.balance import SURELY_LASTS, kneels, off_balance
 from ...analysis.performance import Performance, contact_points, find_contacts
 from ...arrays import FloatArray
 from ...contacts.noisy_touches import MAX_BREAK
@@ -54,8 +54,8 @@ FLICKERS = 3
 def find_footing(
     performance: Performance, schedule: ContactSchedule | None = None
 ) -> list[Finding]:
-    """Floor, feet below it, flicker, unseen support, feet that skid, weight beside them, and a clip
-    that begins or ends in the air.
+    """Floor, feet below it, flicker, unseen support, feet that skid, weight beside them, knees on the
+    floor, and a clip that begins or ends in the air.
 
     performance: as seen from what it stands on. schedule: its contacts, with the scene's ground;
     None for those with the floor alone.
@@ -71,6 +71,7 @@ def find_footing(
         (FindingKind.UNSEEN_SUPPORT, tuple(u for u in schedule.unseen if u not in skids)),
         (FindingKind.SKIDDING, skids),
         (FindingKind.OFF_BALANCE, off_balance(performance, schedule, SURELY_LASTS)),
+        (FindingKind.KNEELING, kneels(performance)),
         (FindingKind.BEGINS_IN_AIR, tuple(f for f in schedule.flights if f.start == 0.0)),
         (
             FindingKind.ENDS_IN_AIR,
