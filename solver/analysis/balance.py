@@ -23,7 +23,7 @@ SURELY_LASTS = 0.5  # s; longer than these, and than what joints that tremble by
 SMOOTHING = 0.06  # s, standard deviation; who leans does so for longer
 LOADED = 0.3  # body weights, upwards; a smaller force meets the ground anywhere
 STILL = 0.1  # m/s; slower is the pelvis of who sits, or stands and leans, and a knee that carries
-KNEELING = 0.05  # of the height, above the floor; of the joint in a knee on it, at 0.02 to 0.03
+KNEELING = 0.06  # of the height, above the floor; the joint of a knee on it is at 0.03 to 0.05
 _AROUND = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
 _WAYS = np.stack([np.cos(_AROUND), np.sin(_AROUND)])  # (2, W) unit vectors along the ground
 

@@ -54,8 +54,8 @@ FLICKERS = 3
 def find_footing(
     performance: Performance, schedule: ContactSchedule | None = None
 ) -> list[Finding]:
-    """Floor, feet below it, flicker, unseen support, feet that skid, weight beside them, knees on the
-    floor, and a clip that begins or ends in the air.
+    """Floor, feet below it, flicker, unseen support, feet that skid, weight beside them, knees
+    on the floor, and a clip that begins or ends in the air.
 
     performance: as seen from what it stands on. schedule: its contacts, with the scene's ground;
     None for those with the floor alone.
