@@ -296,7 +296,7 @@ def skids_in(performance: Performance, gaps: Sequence[Interval]) -> tuple[Interv
         inside, ways = _inside(performance, gap), [0.0]
         for point in points.values():
             if point.kind is not PointKind.HAND:
-                low = point.track[:, 2] - floor_m < point.kind.value.max_height
+                low = point.track[:, 2] - floor_m < point.max_height
                 places = point.track[inside & low, :2]
                 ways += np.ptp(places, axis=0).tolist() if len(places) else []
         return max(ways) > SKIDS

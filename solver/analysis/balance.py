@@ -106,7 +106,7 @@ def low_palms(performance: Performance) -> dict[str, BoolArray]:
     that a body vaults over roll too fast for contacts to be found."""
     points, floor_m = contact_points(performance)
     hands = ((name, p) for name, p in points.items() if p.kind is PointKind.HAND)
-    return {name: p.track[:, 2] - floor_m < p.kind.value.max_height for name, p in hands}
+    return {name: p.track[:, 2] - floor_m < p.max_height for name, p in hands}
 
 
 def pelvis_at_rest(performance: Performance) -> tuple[BoolArray, BoolArray]:

@@ -30,6 +30,7 @@ from .soles import FootTracks, floor_height, foot_points
 
 SNAP_FRAMES = 1.5
 MIN_SNAP_TOLERANCE = 0.012  # s; instants nearer than this share a knot
+PALM_DEPTH = 0.03  # of the height; a hand's bone is so far above the floor that its palm is on
 LEANING = 0.07  # of the height, above the floor; wrists and knees on it are at 0.03 to 0.05
 
 
@@ -165,7 +166,7 @@ def leans(performance: Performance, floor_m: float) -> BoolArray:
 def low_feet(points: Mapping[str, ContactPoint], floor_m: float) -> BoolArray:
     """(T,) whether a point of a foot is as low as one that stands, however it moves."""
     feet = [point for point in points.values() if point.kind is not PointKind.HAND]
-    low = [point.track[:, 2] - floor_m < point.kind.value.max_height for point in feet]
+    low = [point.track[:, 2] - floor_m < point.max_height for point in feet]
     return np.asarray(np.any(low, axis=0))
 
 
@@ -175,7 +176,8 @@ def _palm(performance: Performance, hand: int) -> ContactPoint:
     place = 0.5 * body.tip
     track = performance.centres[:, hand] + performance.rotations[:, hand] @ place
     rest = recording.bones[recording.index(body.bone)].rotation
-    return ContactPoint(PointKind.HAND, body.bone, rest.T @ place, track)
+    depth = PALM_DEPTH * performance.character.height
+    return ContactPoint(PointKind.HAND, body.bone, rest.T @ place, track, depth=depth)
 
 
 def _foot(performance: Performance, side: Side) -> FootTracks:

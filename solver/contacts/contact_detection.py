@@ -91,7 +91,7 @@ def _touches(
 ) -> Iterable[Contact]:
     """Contacts of one point, in order and disjoint. clock: (N,) s, of the movement."""
     thresholds = point.kind.value
-    low = movement.track[:, 2] < ground(clock, movement.track) + thresholds.max_height
+    low = movement.track[:, 2] < ground(clock, movement.track) + point.max_height
     at_rest = low & (np.linalg.norm(movement.velocity, axis=1) < thresholds.max_speed)
     candidates = [
         candidate
@@ -100,7 +100,9 @@ def _touches(
     ]
     for candidate in _joined(_without_pauses(candidates, thresholds, movement), movement.track):
         cut_off = candidate.start <= clock[0] or candidate.end >= clock[-1]
-        if candidate.end - candidate.start > (0.0 if cut_off else thresholds.min_duration):
+        rest = (candidate.last - candidate.first) * STEP
+        lasts = candidate.end - candidate.start > thresholds.min_duration
+        if cut_off or (lasts and rest >= thresholds.min_rest):
             during = slice(candidate.first, candidate.last + 1)
             place = np.median(movement.point[during][at_rest[during]], axis=0)
             yield Contact(

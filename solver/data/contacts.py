@@ -25,8 +25,8 @@ class ContactThresholds:
     max_height (m above the floor) and max_speed (m/s) must both hold for a point to touch at all.
     landing_height: m above the lowest to which the point then sinks, lift_off_height: m by which
     its sole is above its usual height in this contact; at which its force begins and ends, roughly:
-    a sole is pressed when it is a little up. max_slip_speed: m/s along the floor. min_duration: s;
-    the shortest contact believed.
+    a sole is pressed when it is a little up. max_slip_speed: m/s along the floor. min_rest: s, for
+    which it stays low and slow. min_duration: s; the shortest contact believed.
     """
 
     max_height: float
@@ -34,6 +34,7 @@ class ContactThresholds:
     landing_height: float
     lift_off_height: float
     max_slip_speed: float
+    min_rest: float
     min_duration: float
 
 
@@ -46,6 +47,7 @@ class PointKind(Enum):
         landing_height=0.015,
         lift_off_height=0.015,
         max_slip_speed=2.0,
+        min_rest=0.0,
         min_duration=0.04,
     )
     TOE = ContactThresholds(
@@ -54,14 +56,16 @@ class PointKind(Enum):
         landing_height=0.02,
         lift_off_height=0.024,
         max_slip_speed=2.0,
+        min_rest=0.0,
         min_duration=0.04,
     )
     HAND = ContactThresholds(
-        max_height=0.06,
+        max_height=0.035,
         max_speed=0.15,
-        landing_height=0.005,
-        lift_off_height=0.005,
+        landing_height=0.015,
+        lift_off_height=0.015,
         max_slip_speed=0.3,
+        min_rest=0.15,  # where it turns back in the air a hand is slow for half of that
         min_duration=0.15,
     )
 
@@ -72,6 +76,7 @@ class ContactPoint:
 
     hip: (T, 3) m, world; where the leg that ends in the point begins. pressing: (T, 3) m, world;
     the part of the sole that the load is first and most on, where that is not the point itself.
+    depth: m; of the point within its part, and so its height where that rests on the floor.
     """
 
     kind: PointKind
@@ -80,6 +85,12 @@ class ContactPoint:
     track: FloatArray
     hip: FloatArray | None = None
     pressing: FloatArray | None = None
+    depth: float = 0.0
+
+    @property
+    def max_height(self) -> float:
+        """M above the ground, up to which the point may touch it."""
+        return self.depth + self.kind.value.max_height
 
     def part(self, frames: slice) -> "ContactPoint":
         """The same point during some of the frames."""
