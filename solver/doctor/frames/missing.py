@@ -27,6 +27,8 @@ NEARER = 2.2  # times, to a cubic, if the frames are missing; where two are, two
 STANDS_OUT = 2.5  # times the median of how far those around are from one
 ROUNDING = 1e-7  # m, of places in single precision; what is nearer to a cubic is on it
 ALIKE = 0.4  # of a step, by which it may differ from its neighbours' way
+TOO_FAR = 1.4  # times its usual step, which a joint makes twice and more where frames are missing
+BODY = 0.5  # of the joints, that step too far; of one limb that whips round, or flips, fewer do
 
 
 def find_dropped(recording: Recording) -> Finding | None:
@@ -115,15 +117,18 @@ def off_cubic(products: FloatArray, instants: FloatArray) -> FloatArray:
 
 def _is_alike(moves: FloatArray, several: int, count: int) -> BoolArray:
     """(count,) whether all of several steps, side by side after BESIDE others, go the way of those
-    before and after them, as no jump does, and these move. moves: (T - 1, D) m."""
-    before, after = (moves[k : k + count] for k in (BESIDE - 1, BESIDE + several))
+    before and after them, as no jump does, these move, and most joints go too far by themselves.
+    moves: (T - 1, D) m."""
+    by_joint = moves.reshape(len(moves), -1, 3)
+    before, after = (by_joint[k : k + count] for k in (BESIDE - 1, BESIDE + several))
     alike = np.ones(count, bool)
     for k in range(several):
-        own, share = moves[BESIDE + k : BESIDE + k + count], (k + 1) / (several + 1)
+        own, share = by_joint[BESIDE + k : BESIDE + k + count], (k + 1) / (several + 1)
         usual = before + share * (after - before)
-        square = np.maximum(np.einsum("ti,ti->t", usual, usual), 1e-12)
-        times = np.einsum("ti,ti->t", own, usual) / square
-        rest = np.linalg.norm(own - times[:, None] * usual, axis=1)
-        alike &= rest < ALIKE * np.linalg.norm(own, axis=1)
-        alike &= np.abs(usual).max(axis=1) > MOVING
+        squares, along = (np.einsum("tji,tji->tj", step, usual) for step in (usual, own))
+        times = along.sum(axis=1) / np.maximum(squares.sum(axis=1), 1e-12)
+        rest = np.linalg.norm(own - times[:, None, None] * usual, axis=(1, 2))
+        alike &= rest < ALIKE * np.linalg.norm(own, axis=(1, 2))
+        alike &= np.abs(usual).max(axis=(1, 2)) > MOVING
+        alike &= (along > TOO_FAR * squares).mean(axis=1) >= BODY
     return alike

@@ -97,3 +97,12 @@ def test_products_of_moves_tell_how_far_places_are_from_a_cubic() -> None:
     powers = np.vander(instants, 4)
     left = places - powers @ np.linalg.lstsq(powers, places, rcond=None)[0]
     assert off == pytest.approx(np.linalg.norm(left), rel=1e-9)
+
+
+def test_an_arm_that_whips_round_tells_of_no_missing_frames() -> None:
+    """It alone moves as if two frames were missing, beside a body that stands."""
+    heads, at = np.repeat(jump().heads[:1], len(jump().frames), axis=0), 100
+    arm = [i for i, bone in enumerate(jump().bones) if bone.name in ("LeftForeArm", "LeftHand")]
+    heads[:at, arm], heads[at:-2, arm] = jump().heads[:at, arm], jump().heads[at + 2 :, arm]
+    heads[-2:, arm] = jump().heads[-1, arm]
+    assert find_dropped(replace(jump(), heads=heads)) is None
