@@ -1,6 +1,6 @@
 """Annotations of a picture (thesis 6): from an adaptation's constraints to marks."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from ...bridge.picture.annotations import (
     Tint,
     Tone,
 )
+from ...solver.analysis.timeline import Timeline
 from ...solver.arrays import FloatArray
 from ...solver.body.kinematics import Pose, forward_kinematics
 from ...solver.data.problem import MotionProblem
@@ -45,8 +46,18 @@ def marks_of(adaptation: Adaptation, problem: MotionProblem) -> tuple[Mark, ...]
         marks += _of_condition(condition, figure)
     marks += _limp(requests.torques, adaptation, figure)
     marks += (mark for added in requests.body.added for mark in _carried(added, figure))
-    marks += (_thing(each, adaptation, figure) for each in problem.scene)
+    line = adaptation.setup.context.timeline
+    marks += (_thing(each, line, figure.times, figure.com) for each in problem.scene)
     return tuple(marks)
+
+
+def recorded_on(adaptation: Adaptation, scene: Sequence[SceneObject]) -> tuple[Mark, ...]:
+    """The objects of a scene that the recording has contacts on; for `picture.recorded_row`."""
+    performance, line = adaptation.fit.performance, adaptation.setup.context.timeline
+    names = {contact.on for contact in adaptation.fit.schedule.contacts}
+    touched = {each.whole for each in scene if each.name in names}
+    drawn = (each for each in scene if each.whole in touched)
+    return tuple(_thing(each, line, performance.times, performance.com) for each in drawn)
 
 
 class _Posed:
@@ -163,16 +174,16 @@ def _carried(added: AddedMass, figure: _Posed) -> Iterator[Box]:
 # ---------------------------------------------------------------- the scene
 
 
-def _thing(thing: SceneObject, adaptation: Adaptation, figure: _Posed) -> Thing:
-    """An object, with the figures that are by it: over it, or nearly."""
-    line = adaptation.setup.context.timeline
-    places, turns = ObjectMotion.of(thing, line.first_frame, line.rate).at(figure.times)
+def _thing(thing: SceneObject, line: Timeline, times: FloatArray, com: FloatArray) -> Thing:
+    """An object, with the figures that are by it: over it, or nearly. com: (T, 3) m, of the body at
+    `times` (T,) s."""
+    places, turns = ObjectMotion.of(thing, line.first_frame, line.rate).at(times)
     if not thing.moves:
         places, turns = places[0], turns[0]
     points = thing.vertices @ np.swapaxes(turns, -1, -2) + places[..., None, :]
     if thing.moves:  # faces of two instants in one plane would be drawn black
-        points[..., 2] -= SINKING * figure.times[:, None]
+        points[..., 2] -= SINKING * times[:, None]
     low, high = points.min(axis=-2) - BESIDE, points.max(axis=-2) + BESIDE
-    by = ((figure.com > low) & (figure.com < high))[:, :2].all(axis=1)
-    when = figure.times[by] if by.any() else figure.times[[0, -1]]
+    by = ((com > low) & (com < high))[:, :2].all(axis=1)
+    when = times[by] if by.any() else times[[0, -1]]
     return Thing(points, thing.triangles, (float(when[0]), float(when[-1])))

@@ -182,18 +182,18 @@ class Outputs:
             export_takes(performer, [adapted], path, export, pelvis)
 
     def _draw(self, *, picture: bool, film: bool) -> None:
-        from .annotate import marks_of
-        from .picture import draw, draw_moving
+        from .annotate import marks_of, recorded_on
+        from .picture import both_rows, draw, draw_moving
 
-        adaptation, problem = self.result.adaptation, self.clip.problem
+        adaptation, problem = self.result.adaptation, self.result.subject.problem
+        marks = recorded_on(adaptation, problem.scene), marks_of(adaptation, problem)
+        rows = both_rows(adaptation, self.clip.problem, *marks)
         if picture:
             with self.stages.stage("Drawing the picture"), quiet():
-                marks = marks_of(adaptation, self.result.subject.problem)
-                draw(adaptation, problem, self.outbox.path(PICTURE), marks)
+                draw(adaptation, rows, self.outbox.path(PICTURE))
         if film:
             with self.stages.stage("Drawing the film"), quiet():
-                marks = marks_of(adaptation, self.result.subject.problem)
-                draw_moving(adaptation, problem, self.outbox.path(FILM), marks)
+                draw_moving(adaptation, rows, self.outbox.path(FILM))
 
     def write_failure(self) -> None:
         """The report, and the best motion that was found."""

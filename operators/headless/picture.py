@@ -27,37 +27,35 @@ SIDEWAYS = 0.1  # m, from where on a change is hardly seen from the side
 APART = 1.05  # halves of a pelvis, as long as it is drawn; a joint farther off leaves a gap
 
 
-def draw(
-    adaptation: Adaptation, problem: MotionProblem, path: Path, marks: Sequence[Mark] = ()
-) -> None:
-    """The recording above, the adapted motion with its marks below, as a PNG file; where contacts
-    went sideways both once more, from above.
-
-    The marks' arrays are constant, or sampled at `instants(adaptation.motion)`.
-    Raises OutputNotWritable.
-    """
-    rows = both_rows(adaptation, problem, marks)
+def draw(adaptation: Adaptation, rows: Sequence[SheetRow], path: Path) -> None:
+    """`both_rows`, the recording above, as a PNG file; where contacts went sideways both once more,
+    from above. Raises OutputNotWritable."""
     view = View(heading=heading(adaptation))
     draw_sheet(
         rows, path, replace(view, above=goes_sideways(adaptation, canvas_axes(rows, view.heading)))
     )
 
 
-def draw_moving(
-    adaptation: Adaptation, problem: MotionProblem, path: Path, marks: Sequence[Mark] = ()
-) -> None:
+def draw_moving(adaptation: Adaptation, rows: Sequence[SheetRow], path: Path) -> None:
     """What `draw` draws as a film: an MPEG-4 file. Raises OutputNotWritable."""
-    rows = both_rows(adaptation, problem, marks)
     draw_film(rows, path, View(heading=heading(adaptation)))
 
 
 def both_rows(
-    adaptation: Adaptation, problem: MotionProblem, marks: Sequence[Mark]
+    adaptation: Adaptation,
+    problem: MotionProblem,
+    recorded: Sequence[Mark] = (),
+    adapted: Sequence[Mark] = (),
 ) -> tuple[SheetRow, SheetRow]:
-    """The recording, and the adapted motion with what was asked for as its title."""
+    """The recording, and the adapted motion with what was asked for as its title.
+
+    recorded, adapted: marks; their arrays are constant, or sampled at the recording's instants and
+    at `instants(adaptation.motion)`.
+    """
     asked = [*map(caption, problem.pins), *problem.requests.names]
     edit = "; ".join(asked) or "made to obey physics"
-    return recorded_row(adaptation), adapted_row(adaptation, f"Adapted: {edit}", marks)
+    title = f"Adapted: {edit}"
+    return recorded_row(adaptation, recorded), adapted_row(adaptation, title, adapted)
 
 
 def heading(adaptation: Adaptation) -> tuple[float, float] | None:
@@ -78,17 +76,21 @@ def instants(motion: Motion, rate: float = 120.0) -> FloatArray:
     return np.linspace(0.0, motion.duration, max(2, round(motion.duration * rate) + 1))
 
 
-def recorded_row(adaptation: Adaptation) -> SheetRow:
+def recorded_row(adaptation: Adaptation, marks: Sequence[Mark] = ()) -> SheetRow:
     """The recording with the contacts found in it."""
     performance, schedule = adaptation.fit.performance, adaptation.fit.schedule
+    parts = {body.bone: body.part for body in performance.character.bodies}
+    feet = [contact for contact in schedule.contacts if parts[contact.bone] in FEET]
+    others = [contact for contact in schedule.contacts if contact not in feet]
     return SheetRow(
         f"Recording: {performance.recording.name}",
         performance.times,
         tuple(limbs(performance.character, performance.rotations, performance.centres)),
         performance.com,
-        np.array([c.place for c in schedule.contacts]).reshape(-1, 3),
+        np.array([c.place for c in feet]).reshape(-1, 3),
         key_times(adaptation.fit.motion, schedule.phases),
-        tuple((c.start, c.end) for c in schedule.contacts),
+        tuple((c.start, c.end) for c in feet),
+        (*(Sphere(c.place, (c.start, c.end)) for c in others), *marks),
     )
 
 
@@ -118,12 +120,13 @@ def adapted_row(adaptation: Adaptation, title: str, marks: Sequence[Mark] = ()) 
 class ContactHold:
     """Place, m, and interval of a contact of one part of the body.
 
-    place: (3,), or (T, 3) where it moves.
+    place: (3,), or (T, 3) where it moves. grip: whether the part holds on there.
     """
 
     part: Part
     place: FloatArray
     span: TimeSpan
+    grip: bool
 
 
 def contact_holds(motion: Motion, times: FloatArray) -> Iterator[ContactHold]:
@@ -135,12 +138,12 @@ def contact_holds(motion: Motion, times: FloatArray) -> Iterator[ContactHold]:
         if contact.track is not None or contact.ride is not None:
             rigid = replace(contact, sole=None)
             place = rigid.holds(np.clip(times, *span)).of(place)
-        yield ContactHold(body.part, place, span)
+        yield ContactHold(body.part, place, span, contact.friction is None)
 
 
 def bars(holds: Sequence[ContactHold]) -> Iterator[Bar]:
     """A level bar through each two hands that hold on at the same time."""
-    hands = [hold for hold in holds if hold.part is Part.HAND]
+    hands = [hold for hold in holds if hold.part is Part.HAND and hold.grip]
     for one, other in combinations(hands, 2):
         span = max(one.span[0], other.span[0]), min(one.span[1], other.span[1])
         along = (other.place - one.place) * [1.0, 1.0, 0.0]

@@ -1,16 +1,29 @@
-"""The figures of a picture."""
+"""The figures of a picture, and what is drawn beside them."""
+
+from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
-from hangtime.operators.headless.picture import goes_sideways, limbs
+from hangtime.bridge.picture.annotations import Bar, Mark, Sphere, Thing
+from hangtime.bridge.picture.layout import lay_out
+from hangtime.operators.headless.annotate import recorded_on
+from hangtime.operators.headless.picture import (
+    ContactHold,
+    bars,
+    goes_sideways,
+    limbs,
+    recorded_row,
+)
 from hangtime.solver.analysis.performance import perform
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.body.character import build_character
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import Hold, Requests
-from hangtime.solver.stages.implicit import adapt
+from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.tests.helpers.clips import JUMP, load_recording
 from hangtime.tests.helpers.fitted_hop import fitted_hop
+from hangtime.tests.helpers.meshes import box, thing
 
 NEAR = 0.06  # m, that a slice of the trunk is drawn beyond its box
 
@@ -45,3 +58,48 @@ def test_it_is_seen_from_above_where_contacts_went_sideways_also_without_the_lan
     assert goes_sideways(moved, np.array([[x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, 1.0]])) == (
         left > 0.0
     )
+
+
+@cache
+def as_recorded() -> Adaptation:
+    return adapt(fitted_hop(), MotionProblem())
+
+
+def with_contact(on: str | None, bone: str, height: float) -> Adaptation:
+    """The hop with one more contact of a bone in its recording. height: m, of its place."""
+    fit = as_recorded().fit
+    first = fit.schedule.contacts[0]
+    place = np.array([*first.place[:2], height])
+    more = replace(first, name="More", point="More", bone=bone, place=place, on=on)
+    schedule = replace(fit.schedule, contacts=(*fit.schedule.contacts, more))
+    return replace(as_recorded(), fit=replace(fit, schedule=schedule))
+
+
+@pytest.mark.slow
+def test_a_foot_that_is_up_stands_on_a_step_and_a_hand_on_the_floor_does_not() -> None:
+    for bone, steps in (("LeftHand", 0), ("LeftFoot", 1)):
+        row = recorded_row(with_contact(None, bone, 0.07))
+        (tier,) = lay_out([row]).tiers
+        assert len(tier.steps) == steps
+        assert len([mark for mark in row.marks if isinstance(mark, Sphere)]) == 1 - steps
+
+
+@pytest.mark.slow
+def test_the_recording_is_drawn_with_what_it_stood_on_and_nothing_else() -> None:
+    scene = [thing(name, box((1.0, 1.0, 0.5))) for name in ("Crate", "Hurdle")]
+    stood = with_contact("Crate", "LeftFoot", 0.5)
+    (crate,) = recorded_on(stood, scene)
+    assert isinstance(crate, Thing)
+    assert recorded_on(as_recorded(), scene) == ()
+    (tier,) = lay_out([recorded_row(stood, (crate,))]).tiers
+    assert tier.steps == ()
+
+
+def test_hands_that_hold_on_are_at_a_bar_and_those_that_lean_on_the_floor_are_not() -> None:
+    def drawn(grip: bool) -> list[Mark]:
+        places = np.array([[0.3, 0.0, 0.05], [-0.3, 0.0, 0.05]])
+        return list(bars([ContactHold(Part.HAND, each, (0.0, 1.0), grip) for each in places]))
+
+    assert drawn(grip=False) == []
+    (bar,) = drawn(grip=True)
+    assert isinstance(bar, Bar)
