@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hangtime.solver.data.traces import UNSEEN_SUPPORT
 from hangtime.solver.results.npz_export import sample
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 
@@ -41,6 +42,12 @@ def checked(t: Arrays, folder: Path) -> tuple[int, str]:
 def missed(table: str) -> set[str]:
     """Names of the lines whose limits are broken."""
     return {line[:34].strip() for line in table.splitlines() if line.endswith("NO")}
+
+
+def told(table: str, name: str) -> str:
+    """The rest of a line."""
+    (line,) = (each for each in table.splitlines() if each.startswith(name))
+    return line[34:]
 
 
 def test_a_sound_trajectory_passes(tmp_path: Path) -> None:
@@ -117,3 +124,21 @@ def test_a_spoilt_trajectory_fails(
     code, table = checked(t, tmp_path)
     assert line in missed(table)
     assert code == 1
+
+
+def test_unseen_support_is_told_and_breaks_no_limit(tmp_path: Path) -> None:
+    """Half of each force is of something unseen, which pushes at the same points."""
+    t = sound()
+    shares, without = t["contact_force"] / 2, ("contact_place", "contact_normal", "contact_friction")
+    peak = np.linalg.norm(shares.sum(axis=1), axis=1).max() / (9.81 * t["mass"].sum())
+    unseen = {key: np.full_like(t[key], np.nan) for key in without}
+    unseen |= {"contact_point": t["contact_point"], "contact_force": shares}
+    unseen |= {"contact_slides": np.zeros_like(t["contact_slides"])}
+    t["contact_force"] = shares
+    t |= {key: np.concatenate([t[key], more], axis=1) for key, more in unseen.items()}
+    t["contact_names"] = np.array([*t["contact_names"], *len(t["contact_names"]) * [UNSEEN_SUPPORT]])
+    code, table = checked(t, tmp_path)
+    assert (code, missed(table)) == (0, set())
+    assert float(told(table, "unseen support, peak").split()[0]) == pytest.approx(peak, rel=0.01)
+    t["contact_names"][:] = "Left toe"
+    assert missed(checked(t, tmp_path)[1]) == {"force on what does not touch"}
