@@ -23,6 +23,7 @@ class OperatorId(StrEnum):
     REPAIR_ALL = "hangtime.repair_all"
     SHOW_FINDING = "hangtime.show_finding"
     TRIM = "hangtime.trim"
+    RENAME_KEYS = "hangtime.rename_keys"
     FIT = "hangtime.fit"
     REFINE = "hangtime.refine"
     USE_BEST = "hangtime.use_best"

@@ -124,6 +124,23 @@ def rest_bones(armature: bpy.types.Object, poses: Poses) -> tuple[Bone, ...]:
     return tuple(map(bone, poses.bones, poses.parents))
 
 
+def named_bones(armature: bpy.types.Object) -> list[Bone]:
+    """The bones at rest, parents first; in the armature's own space and units."""
+    bones = sorted(armature_data(armature).bones, key=lambda bone: len(bone.parent_recursive))
+    index = {bone.name: i for i, bone in enumerate(bones)}
+    return [
+        Bone(
+            bone.name,
+            index[bone.parent.name] if bone.parent else -1,
+            np.array(bone.head_local, float),
+            np.array(bone.tail_local, float),
+            np.array(bone.matrix_local.to_3x3(), float),
+            followed_bone(armature, bone.name),
+        )
+        for bone in bones
+    ]
+
+
 def _require_animated(
     armature: bpy.types.Object | None,
 ) -> tuple[bpy.types.Object, list[bpy.types.FCurve]]:

@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import bpy
-import numpy as np
 
-from ...solver.data.recording import Bone
 from ...solver.skeleton.mapping import Evidence, guess_bones, labels_of
 from ...solver.skeleton.parts import LABELS, REQUIRED_KEYS
 from ...solver.skeleton.tree import tree_of
 from ..accessors import armature_data
-from ..armature.poses import followed_bone
+from ..armature.read import named_bones
 from ..properties.settings import HangtimePart, HangtimeSettings, settings_of
 from ..rows.copying import rows_named
 
@@ -64,20 +62,3 @@ def choose_parts(armature: bpy.types.Object, bones: Mapping[str, str]) -> list[s
         if bone is not None and bone in there:
             part.bone = bone
     return [bone for bone in bones.values() if bone not in there]
-
-
-def named_bones(armature: bpy.types.Object) -> list[Bone]:
-    """The bones at rest, parents first; in the armature's own space and units."""
-    bones = sorted(armature_data(armature).bones, key=lambda bone: len(bone.parent_recursive))
-    index = {bone.name: i for i, bone in enumerate(bones)}
-    return [
-        Bone(
-            bone.name,
-            index[bone.parent.name] if bone.parent else -1,
-            np.array(bone.head_local, float),
-            np.array(bone.tail_local, float),
-            np.array(bone.matrix_local.to_3x3(), float),
-            followed_bone(armature, bone.name),
-        )
-        for bone in bones
-    ]

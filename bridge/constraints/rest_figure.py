@@ -16,9 +16,10 @@ from ..accessors import armature_data
 from ..armature.actions import recorded_action, recorded_poses
 from ..armature.channels import proper
 from ..armature.poses import Poses
+from ..armature.read import named_bones
 from ..properties.settings import settings_of
 from ..rows.phases import clip_ends, recorded_span
-from .bone_mapping import chosen_parts, named_bones
+from .bone_mapping import chosen_parts
 
 LOOKS = 48  # instants of a recording that are looked at, at most
 NEXT = {

@@ -8,6 +8,7 @@ from ...bridge.accessors import present, shown_range
 from ...bridge.armature.actions import recorded_action
 from ...bridge.constraints.bone_mapping import chosen_parts, find_parts, missing_parts
 from ...bridge.properties.settings import scene_settings, settings_of
+from ...bridge.repairs.renamed_bones import require_keyed
 from ...bridge.repairs.stored import (
     applied,
     finding_of,
@@ -22,7 +23,7 @@ from ...solver.data.problem import MotionProblem
 from ...solver.worker.protocol import Examined, RequestKind
 from ..names import OperatorId
 from ..solve.adapt import read_wanted
-from ..solve.common import required_armature
+from ..solve.common import required_armature, said
 from ..solve.live import redraw
 from ..solve.scene import read_bound, read_surfaces
 from ..solve.session import session
@@ -51,6 +52,7 @@ class ExamineOperator(TaskOperator, bpy.types.Operator):
         armature = required_armature(context)
         settings = settings_of(armature)
         recording = yield from read_wanted(armature)
+        dead = require_keyed(armature)
         find_parts(armature)
         yield None
         for missing in missing_parts(settings):
@@ -87,6 +89,8 @@ class ExamineOperator(TaskOperator, bpy.types.Operator):
             for row in findings(settings)
             if not (finding_of(row).kind.note or is_applied(settings, row))
         ]
+        if dead is not None:
+            self.report({"WARNING"}, said(dead))
         return FOUND.format(faults(len(wrong))) if wrong else HEALTHY
 
 

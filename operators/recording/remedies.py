@@ -1,4 +1,4 @@
-"""Remedies of how a recording is read: the scene's frame rate, the object's scale, the range."""
+"""Remedies of how a recording is read: frame rate, the object's scale, the range, bones' names."""
 
 import bpy
 
@@ -7,12 +7,18 @@ from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.poses import set_frame_rate
 from ...bridge.files.object_scale import scale_object
 from ...bridge.properties.settings import settings_of
+from ...bridge.repairs.renamed_bones import rename_keys, renamed_bones
 from ...solver.data.faults import Fault
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import ReadyOperator, required_armature, said
 from ..solve.live import redraw
 from ..solve.session import session
+
+LINKED = "“{}” is linked: rename its keys in its own file, or give the bones their old names"
+NOT_RENAMED = (
+    "It is not known which bones were renamed: give them the names that the recording's keys have"
+)
 
 
 class MendingOperator(ReadyOperator):
@@ -87,3 +93,23 @@ class TrimOperator(MendingOperator, bpy.types.Operator):
         settings.first_frame, settings.last_frame = self.first, self.last
         settings.use_range = True
         return self.done(f"The range is frames {self.first} to {self.last} now")
+
+
+class RenameKeysOperator(MendingOperator, bpy.types.Operator):
+    bl_idname = OperatorId.RENAME_KEYS
+    bl_label = "Rename Keys"
+    bl_description = (
+        "Let the keys of bones that were renamed while another action was shown move these bones "
+        "again, in the recording and the results made from it. Analyze next"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    def mend(self, armature: bpy.types.Object) -> OperatorResult:
+        names, recording = renamed_bones(armature), recorded_action(armature)
+        if recording is not None and recording.library is not None:
+            return self.refuse(LINKED.format(recording.name))
+        if not names:
+            return self.refuse(NOT_RENAMED)
+        rename_keys(armature, names)
+        who = f"{len(names)} bones have" if len(names) > 1 else "1 bone has"
+        return self.done(f"{who} keys again")

@@ -22,6 +22,7 @@ from ...bridge.properties.settings import (
 )
 from ...bridge.properties.stances import active_contact
 from ...bridge.repairs.analysis_key import analysis_is_of, span_of
+from ...bridge.repairs.renamed_bones import require_keyed
 from ...bridge.worker_client import shared
 from ...bridge.worker_requests import PendingRequest
 from ...solver.analysis.take import require_inside
@@ -185,6 +186,7 @@ def analysis(
     recorded = shown_range(armature, present(recorded_action(armature)))
     span = span_of(settings, recording)
     _require_inside(armature, span, recorded)
+    dead = require_keyed(armature)
     find_parts(armature)
     yield None
     for missing in missing_parts(settings):
@@ -222,6 +224,8 @@ def analysis(
     scene_settings(context.scene).armature = armature
     found = f"Found {contacts} contacts and {flights or 'no'} flight{'s' if flights > 1 else ''}"
     found = f"{found}{bind}{_snapped(settings, span)}{_noise(recording, problem)}{_unseen(answer)}"
+    if dead is not None:
+        found += f". {said(dead).rstrip('.')}"
     if answer.cycle is None:
         found += _cut_flights(answer.schedule, span, recorded)
     if lost:

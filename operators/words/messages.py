@@ -88,6 +88,8 @@ def _variant(fault: Fault) -> int:
         case faults.NoSolution():
             told = (2 if fault.goes_part else 1) if fault.worst else 0
             return told + (3 if _begins_far_off(fault) else 0)
+        case faults.RenamedBones():
+            return fault.paired
         case faults.NothingTouches():
             return bool(fault.touching)
         case faults.JoinedPhase():

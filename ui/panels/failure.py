@@ -8,7 +8,7 @@ from ...operators.lists.choose_named import named_row
 from ...operators.names import OperatorId
 from ...operators.solve.session import session
 from ...operators.words.failure_text import Failure
-from ...solver.data.faults import NoFit, NoSolution, OddHeight, UnseenSupport
+from ...solver.data.faults import NoFit, NoSolution, OddHeight, RenamedBones, UnseenSupport
 from ..drawing.wrapping import wrapped
 from .sidebar import lines
 
@@ -63,6 +63,8 @@ def _draw_remedy(layout: bpy.types.UILayout, failure: Failure, settings: Hangtim
             layout.operator(OperatorId.EXAMINE, text="Examine the Recording", icon="VIEWZOOM")
         case OddHeight(factor=factor):
             layout.operator(OperatorId.SCALE_TO_HUMAN, icon="FULLSCREEN_EXIT").factor = factor
+        case RenamedBones(paired=True):
+            layout.operator(OperatorId.RENAME_KEYS, icon="FILE_REFRESH")
         case NoFit() as fault:
             _draw_untick(layout, failure, settings)
             _draw_trim(layout, fault)

@@ -23,4 +23,15 @@ RIGS: dict[type[Fault], str | tuple[str, ...]] = {
     faults.HeldBones: "Constraints pose the bones {bones:few} otherwise than their keys say "
     "(frame {frame:g}), so a result could not be written; bake the action and mute these "
     "constraints.",
+    faults.RenamedBones: (
+        "“{action}” has no keys for {unkeyed:few}, but for {bones:few}, which the armature does "
+        "not have: bones were renamed while another action was shown; give them the names that the "
+        "keys have, or delete these keys if they are another armature's (Dope Sheet, Only Show "
+        "Errors).",
+        "“{action}” has no keys for {unkeyed:few}, but for {bones:few}, which the armature does "
+        "not have: bones were renamed while another action was shown; press Rename Keys, and "
+        "Analyze again.",
+    ),
+    faults.DeadKeys: "“{action}” has keys for {bones:few}, which the armature does not have; if "
+    "one was renamed while another action was shown, give it that name again.",
 }

@@ -102,11 +102,13 @@ from .requests import UnknownPhaseIn as UnknownPhaseIn
 from .requests import UnknownReductionBone as UnknownReductionBone
 from .requests import WrongAngle as WrongAngle
 from .requests import WrongWeights as WrongWeights
+from .rigs import DeadKeys as DeadKeys
 from .rigs import DrivenBones as DrivenBones
 from .rigs import HeldBones as HeldBones
 from .rigs import NoControls as NoControls
 from .rigs import PosedByOthers as PosedByOthers
 from .rigs import PulledFromOutside as PulledFromOutside
+from .rigs import RenamedBones as RenamedBones
 from .scenes import GroundNotThere as GroundNotThere
 from .scenes import InsideOut as InsideOut
 from .scenes import JerkyGround as JerkyGround

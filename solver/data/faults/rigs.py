@@ -43,3 +43,22 @@ class HeldBones(Fault):
 
     bones: tuple[str, ...]
     frame: float
+
+
+@dataclass
+class RenamedBones(Fault):
+    """A recording's keys move bones that the armature does not have, and none move these of the
+    body: they were renamed while another action was shown. paired: whether it is known which."""
+
+    action: str
+    bones: tuple[str, ...]
+    unkeyed: tuple[str, ...]
+    paired: bool
+
+
+@dataclass
+class DeadKeys(Fault):
+    """A recording's keys move bones that the armature does not have; the body lacks none."""
+
+    action: str
+    bones: tuple[str, ...]

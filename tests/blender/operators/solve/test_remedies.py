@@ -8,8 +8,9 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.properties.stances import active_stance
+from hangtime.bridge.repairs.renamed_bones import dead_bones, require_keyed
 from hangtime.bridge.rows.phases import roles
-from hangtime.operators.solve.common import chosen_armature
+from hangtime.operators.solve.common import chosen_armature, said
 from hangtime.operators.words.failure_text import failure_of
 from hangtime.solver.data.faults import NoSolution, UnseenSupport
 from hangtime.solver.data.row_kinds import RowKind, Violation
@@ -86,6 +87,58 @@ def test_a_keyed_scale_is_scaled_with_its_object(jump: bpy.types.Object) -> None
     assert tuple(jump.scale) == pytest.approx((1.0, 1.0, 1.0))
     holder = fcurves.holder_in(jump.animation_data.action, fcurves.slot_identifier(jump))
     assert holder.fcurves.find("scale", index=2).evaluate(150) == pytest.approx(1.0)
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+
+
+def rename_beside(armature: bpy.types.Object, names: dict[str, str]) -> None:
+    """While another action is shown, whose curves Blender renames alone."""
+    data, recording = armature.animation_data, armature.animation_data.action
+    data.action = recording.copy()
+    for old, new in names.items():
+        armature.data.bones[old].name = new
+    data.action = recording
+
+
+def contacts_of(armature: bpy.types.Object) -> list[tuple[str, float, float]]:
+    return [(row.name, row.start_frame, row.end_frame) for row in armature.hangtime.contacts]
+
+
+def test_keys_of_renamed_bones_are_missed_and_renamed(analysed: bpy.types.Object) -> None:
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    before = contacts_of(analysed)
+    prefixed = {b.name: f"rig_{b.name}" for b in analysed.data.bones if "Foot" not in b.name}
+    rename_beside(analysed, {"LeftFoot": "ankle.L", "RightFoot": "ankle.R"} | prefixed)
+    for refused in (bpy.ops.hangtime.examine, bpy.ops.hangtime.analyze):
+        with pytest.raises(RuntimeError, match=r"no keys for ankle\.L, .* press Rename Keys"):
+            refused()
+    assert contacts_of(analysed) == before
+    assert bpy.ops.hangtime.rename_keys() == {"FINISHED"}
+    assert not dead_bones(analysed)
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert contacts_of(analysed) == before
+
+
+def test_bones_that_may_be_any_of_several_are_to_be_named_back(analysed: bpy.types.Object) -> None:
+    rename_beside(analysed, {"LeftFoot": "ankle.L", "RightFoot": "ankle.R"})
+    analysed.hangtime.parts.clear()
+    with pytest.raises(RuntimeError, match=r"no keys for ankle\.L, ankle\.R, .*the names that the"):
+        bpy.ops.hangtime.analyze()
+    with pytest.raises(RuntimeError, match="not known which bones were renamed"):
+        bpy.ops.hangtime.rename_keys()
+
+
+def test_the_one_bone_without_keys_is_the_one_that_was_renamed(analysed: bpy.types.Object) -> None:
+    rename_beside(analysed, {"LeftFoot": "ankle.L"})
+    analysed.hangtime.parts.clear()
+    assert bpy.ops.hangtime.rename_keys() == {"FINISHED"}
+    assert not dead_bones(analysed)
+
+
+def test_keys_of_no_bone_are_told_where_the_body_lacks_none(analysed: bpy.types.Object) -> None:
+    assert require_keyed(analysed) is None
+    curves = fcurves.holder(analysed)
+    curves.fcurves.new('pose.bones["Tail"].location', index=0).keyframe_points.insert(1.0, 0.0)
+    assert "has keys for Tail, which the armature does not have" in said(require_keyed(analysed))
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
 
 

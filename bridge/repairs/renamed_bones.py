@@ -1,0 +1,125 @@
+"""Bones that were renamed while another action was shown: Blender renames no other's curves, so a
+recording's keys move a bone that is not there any more, and the bone itself stays at rest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Set
+
+import bpy
+
+from ...solver.data.faults import DeadKeys, RenamedBones
+from ...solver.skeleton.mapping import guess_labels
+from ...solver.skeleton.parts import LABELS, REQUIRED_KEYS
+from ..accessors import armature_data, present
+from ..armature import fcurves
+from ..armature.actions import recorded_action, showing_recorded
+from ..armature.read import named_bones
+from ..controls.driven import constrained
+from ..properties.settings import settings_of
+from ..takes.difference import difference_shown
+from ..takes.takes import takes_of
+
+
+def require_keyed(armature: bpy.types.Object) -> DeadKeys | None:
+    """Refuse a recording whose keys lack a bone of the body that was renamed.
+
+    Returns what is to be said where it has keys of other bones that the armature lacks. To be asked
+    before parts are found anew, which forgets what they were called. Raises RenamedBones.
+    """
+    dead = dead_bones(armature)
+    if not dead:
+        return None
+    action = present(recorded_action(armature)).name
+    moved, parts = _moved(armature), _parts(armature)
+    renamed = renamed_bones(armature)
+    needed = {parts[label] for label in parts if LABELS[label] in REQUIRED_KEYS}
+    still = [bone for bone in needed if not _carried(armature, bone, moved, set(parts.values()))]
+    unkeyed = tuple(sorted({*renamed.values(), *still}))
+    if unkeyed:
+        raise RenamedBones(action, dead, unkeyed, paired=bool(renamed))
+    return DeadKeys(action, dead)
+
+
+def dead_bones(armature: bpy.types.Object) -> tuple[str, ...]:
+    """The bones that a recording's keys move and the armature does not have."""
+    bones = armature_data(armature).bones
+    return tuple(name for name in _keyed(armature) if name not in bones)
+
+
+def renamed_bones(armature: bpy.types.Object) -> dict[str, str]:
+    """Of bones that a recording's keys move what they are called now: of a part of the body its
+    bone, of others the one that has the old name in its own, or is in it; else the only one that
+    may be."""
+    dead, moved, parts = dead_bones(armature), _moved(armature), _parts(armature)
+    unkeyed = [bone.name for bone in armature_data(armature).bones if bone.name not in moved]
+    found = {
+        part.bone: parts[part.name]
+        for part in settings_of(armature).parts
+        if part.bone in dead and parts.get(part.name) in unkeyed
+    }
+    for name in dead:
+        like = [b for b in unkeyed if b.endswith(name) or name.endswith(b)]
+        if name not in found and len(like) == 1 and like[0] not in found.values():
+            found[name] = like[0]
+    bodies = [bone for bone in parts.values() if bone in unkeyed]
+    return found or (dict(zip(dead, bodies, strict=True)) if len(dead) == len(bodies) == 1 else {})
+
+
+def rename_keys(armature: bpy.types.Object, names: Mapping[str, str]) -> None:
+    """Have the keys of an armature's takes move the bones as they are called now. A take whose keys
+    do so already stays."""
+    slot = fcurves.slot_identifier(armature)
+    for take in takes_of(armature):
+        for action in (take.action, difference_shown(take.action)):
+            curves = fcurves.holder_in(action, slot) if action is not None else None
+            if curves is not None:
+                _rename(curves, names)
+
+
+def _rename(curves: fcurves.CurveHolder, names: Mapping[str, str]) -> None:
+    keyed = {fcurves.bone_of(curve.data_path) for curve in curves.fcurves}
+    for curve in curves.fcurves:
+        name = fcurves.bone_of(curve.data_path)
+        if name is not None and name in names and names[name] not in keyed:
+            old, new = (bpy.utils.escape_identifier(each) for each in (name, names[name]))
+            curve.data_path = curve.data_path.replace(f'["{old}"]', f'["{new}"]', 1)
+            if curve.group is not None and curve.group.name == name:
+                curve.group.name = names[name]
+
+
+def _keyed(armature: bpy.types.Object) -> dict[str, None]:
+    """The bones that a recording has keys for, in their order."""
+    action = recorded_action(armature)
+    slot = fcurves.slot_identifier(armature)
+    curves = fcurves.holder_in(action, slot) if action is not None else None
+    keyed = [curve for curve in curves.fcurves if len(curve.keyframe_points)] if curves else []
+    bones = (fcurves.bone_of(curve.data_path) for curve in keyed)
+    return dict.fromkeys(name for name in bones if name is not None)
+
+
+def _moved(armature: bpy.types.Object) -> set[str]:
+    """The bones that keys, drivers or constraints move."""
+    data = armature.animation_data
+    paths = [] if data is None else [each.data_path for each in data.drivers]
+    driven = {name for path in paths if (name := fcurves.bone_of(path)) is not None}
+    with showing_recorded(armature)():
+        return {*_keyed(armature), *driven, *constrained(armature)}
+
+
+def _carried(armature: bpy.types.Object, name: str, moved: Set[str], bodies: Iterable[str]) -> bool:
+    """Whether a bone moves by itself, or with a control above it that is none of the body's."""
+    bone = armature_data(armature).bones[name]
+    while bone.name not in moved:
+        if bone.parent is None or bone.parent.name in bodies:
+            return False
+        bone = bone.parent
+    return True
+
+
+def _parts(armature: bpy.types.Object) -> dict[str, str]:
+    """The bone of each part, by its label: as the artist chose where that is there, else as found
+    now."""
+    bones = armature_data(armature).bones
+    guessed = guess_labels(named_bones(armature))
+    chosen = {p.name: p.bone for p in settings_of(armature).parts if p.bone in bones}
+    return {label: each[0] for label, each in guessed.items() if each is not None} | chosen
