@@ -123,6 +123,7 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     analysed_rate: hidden(number())  # frames/s of the scene then; 0 where no one kept it
     # First and last scene frame that were analysed; both 0 where no one kept them.
     analysed_span: hidden(vector(size=2))
+    analysed_state: hidden(text())  # JSON: its parts, see bridge/repairs; "" where no one kept it
     # Names of its contacts, and the digest: lines. Without them an override could not tell its own
     # contacts from what was found in its library since.
     analysed_contacts: hidden(text())

@@ -19,6 +19,7 @@ from ..properties.settings import action_settings, settings_of
 from ..rows.phases import UNSEEN
 from ..takes.takes import SPANS
 from ..unkeyed import UNKEYED
+from .analysed_state import STATE
 from .stored import FEET, is_finding
 
 
@@ -37,6 +38,8 @@ def unreadable_texts(armature: bpy.types.Object) -> Iterator[UnreadableText]:
     settings = settings_of(armature)
     if not UNSEEN.is_ours(settings.unseen):
         yield UnreadableText(armature.name, UNSEEN.name, TextCure.ANALYZE)
+    if not STATE.is_ours(settings.analysed_state):
+        yield UnreadableText(armature.name, STATE.name, TextCure.ANALYZE)
     if not FEET.is_ours(settings.feet):
         yield UnreadableText(armature.name, FEET.name, TextCure.EXAMINE)
     if not traces_store.is_ours(armature):

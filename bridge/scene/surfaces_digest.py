@@ -7,6 +7,7 @@ import json
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from math import isclose
+from typing import Any
 from zlib import crc32
 
 import bpy
@@ -17,6 +18,7 @@ from ..accessors import current_scene
 from ..action_slots import all_curves
 from ..armature.keys_digest import keys_digest
 from ..armature.poses import frames_per_second, metres_per_unit
+from ..hidden_texts import entries, listed, number
 from ..movable import may_move, movers
 from ..properties.settings import HangtimeSettings
 from .members import objects_of
@@ -60,8 +62,14 @@ class Conditions:
     @staticmethod
     def read(text: str) -> Conditions:
         """As `as_text` wrote them."""
-        found = json.loads(text)
-        return Conditions(found["rate"], found["metres"], tuple(found["place"]))
+        return Conditions.told(json.loads(text))
+
+    @staticmethod
+    def told(content: Any) -> Conditions:
+        """Of a table that holds them. Raises TypeError and LookupError where that is another."""
+        found = entries(content)
+        place = tuple(map(number, listed(found["place"])))
+        return Conditions(number(found["rate"]), number(found["metres"]), place)
 
     def as_text(self) -> str:
         return json.dumps(asdict(self))
@@ -71,13 +79,24 @@ class Conditions:
 
         among_surfaces: whether it matters where the armature stands.
         """
-        if not isclose(self.rate, before.rate, rel_tol=_SAME):
+        if self.replayed(before):
             return OTHER_RATE.format(self.rate, before.rate)
-        if not isclose(self.metres, before.metres, rel_tol=_SAME):
+        if self.resized(before):
             return OTHER_SIZE.format(self.metres / before.metres)
-        told = among_surfaces and bool(self.place) and bool(before.place)
-        moved = told and not np.allclose(self.place, before.place, rtol=0.0, atol=_STILL)
-        return ELSEWHERE if moved else ""
+        return ELSEWHERE if among_surfaces and self.moved(before) else ""
+
+    def replayed(self, before: Conditions) -> bool:
+        """Whether the scene plays at another rate."""
+        return not isclose(self.rate, before.rate, rel_tol=_SAME)
+
+    def resized(self, before: Conditions) -> bool:
+        """Whether the armature has another size."""
+        return not isclose(self.metres, before.metres, rel_tol=_SAME)
+
+    def moved(self, before: Conditions) -> bool:
+        """Whether the armature was put elsewhere, or scaled."""
+        told = bool(self.place) and bool(before.place)
+        return told and not np.allclose(self.place, before.place, rtol=0.0, atol=_STILL)
 
 
 def _matrix(thing: bpy.types.Object) -> FloatArray:

@@ -52,7 +52,7 @@ _NOT_ASKED = (  # of the next result
     *("marks", "adapted", "source", MARKS.name, "status", "met", "measured_height", "fit_quality"),
     *("shapes_told", "unseen", "analysed_motion", "analysed_span", "analysed_contacts"),
     *("whole_stance", "moving", "active_contact", "active_constraint", "active_surface"),
-    "active_body_change",
+    *("active_body_change", "analysed_state"),
     *("keep_polish", *_OF_RECORDING),
 )
 _NOT_KEPT = ("marks", "adapted", "source", MARKS.name, *_OF_RECORDING)
@@ -263,7 +263,7 @@ def start_from_result(armature: bpy.types.Object, result: bpy.types.Action) -> N
     _drop_constraints(armature, settings)
     forget(armature)
     settings.analysed = settings.analysed_motion = settings.analysed_contacts = ""
-    settings.unseen = settings.fit_quality = settings.status = ""
+    settings.analysed_state = settings.unseen = settings.fit_quality = settings.status = ""
     result.use_fake_user = True
     show(armature, result)
 

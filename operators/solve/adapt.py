@@ -24,6 +24,7 @@ from ...bridge.loops.write_loop import (
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ...bridge.recipe.keys import require_every_frame
 from ...bridge.recipe.result import require_return_after, require_return_within
+from ...bridge.repairs.analysed_state import AnalysedState, changed_since_analysis
 from ...bridge.repairs.analysis_key import (
     analysis_is_of,
     analysis_key,
@@ -232,6 +233,7 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
         looped,
         scene,
         aimed,
+        AnalysedState.of(armature),
     )
 
 
@@ -276,7 +278,8 @@ def _require_analysed(armature: bpy.types.Object, recording: Recording) -> None:
             raise RateChanged(*rates, while_solving=False)
         if spans is not None:
             raise SpanChanged(*spans)
-    raise ChangedMeanwhile(armature.name, while_solving=False)
+    changed = changed_since_analysis(armature)
+    raise ChangedMeanwhile(armature.name, while_solving=False, changed=changed)
 
 
 def require_writable(

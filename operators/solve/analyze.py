@@ -21,6 +21,7 @@ from ...bridge.properties.settings import (
     settings_of,
 )
 from ...bridge.properties.stances import active_contact
+from ...bridge.repairs.analysed_state import AnalysedState
 from ...bridge.repairs.analysis_key import analysis_is_of, span_of
 from ...bridge.repairs.renamed_bones import require_keyed
 from ...bridge.worker_client import shared
@@ -219,6 +220,7 @@ def analysis(
         session().support = (armature.session_uid, tuple(boxes))
     yield None
     lost = write_analysis(settings, recording, answer)
+    settings.analysed_state = AnalysedState.of(armature).as_text()
     keep(armature, answer.traces, armature.matrix_world)
     settings.shapes_told = shapes_told(bound, answer.bones, answer.fleshed)
     scene_settings(context.scene).armature = armature

@@ -10,6 +10,7 @@ from bpy.app.handlers import persistent
 from ...bridge.recipe.keys import KeyOptions
 from ...bridge.recipe.loop import LoopOptions
 from ...bridge.recipe.result import ResultOptions
+from ...bridge.repairs.analysed_state import AnalysedState
 from ...bridge.scene.read import SceneReading
 from ...bridge.takes.takes import AskedSettings
 from ...solver.data.problem import MotionProblem
@@ -27,7 +28,7 @@ class Asked:
     recording and the scene's surfaces were, what was asked, and which bones stay aimed.
 
     settings: those that ask for it, as the artist may change them before it is solved. result,
-    keys, loop: what they say of these, for the same reason.
+    keys, loop: what they say of these, for the same reason. state: what the recording was made of.
     """
 
     armature: str
@@ -40,6 +41,7 @@ class Asked:
     loop: LoopOptions | None = None
     scene: SceneReading = field(default_factory=SceneReading)
     aimed: tuple[str, ...] = ()
+    state: AnalysedState | None = None
 
     @property
     def window(self) -> Recording:

@@ -31,6 +31,7 @@ from ...bridge.properties.of_actions.shown_overlaps import store_overlaps
 from ...bridge.properties.of_actions.shown_times import store_times
 from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.recipe.result import require_return_after
+from ...bridge.repairs.analysed_state import AnalysedState
 from ...bridge.repairs.analysis_key import SAME_RATE
 from ...bridge.rows.choices import After, ContactMarkers, WrittenAs
 from ...bridge.rows.phases import roles
@@ -80,6 +81,7 @@ HELD = (
     "Constraints keep {} from the result (frame {:g}), so it is not what was solved; mute them and "
     "press Update"
 )
+GONE = "it was removed"
 FORMS = {
     WrittenAs.ACTION: "action",
     WrittenAs.STRIP: "strip",
@@ -361,7 +363,16 @@ def _unchanged(asked: Asked) -> Incremental[bpy.types.Object]:
         try:
             now = yield from read_recorded_incrementally(armature, frames[0], frames[-1])
         except Fault as fault:  # another action, a scale: whatever it is, it is new
-            raise ChangedMeanwhile(asked.armature, while_solving=True) from fault
+            raise _changed(asked, armature) from fault
         if same_motion(replace(now, times=asked.recording.times), asked.recording):
             return armature
-    raise ChangedMeanwhile(asked.armature, while_solving=True)
+    raise _changed(asked, armature)
+
+
+def _changed(asked: Asked, armature: bpy.types.Object | None) -> ChangedMeanwhile:
+    """What is to be said of an armature, by its present name, that is another than was asked
+    about; None: that is gone."""
+    if armature is None:
+        return ChangedMeanwhile(asked.armature, while_solving=True, changed=(GONE,))
+    parts = () if asked.state is None else AnalysedState.of(armature).since(asked.state)
+    return ChangedMeanwhile(armature.name, while_solving=True, changed=parts)

@@ -106,7 +106,9 @@ def _variant(fault: Fault) -> int:
             return fault.reach is not None
         case faults.UnknownObject():
             return bool(fault.known)
-        case faults.ChangedMeanwhile() | faults.RateChanged():
+        case faults.ChangedMeanwhile():
+            return fault.while_solving + (2 if fault.changed else 0)
+        case faults.RateChanged():
             return fault.while_solving
     raise TypeError(f"which words are for {type(fault).__name__}?")
 

@@ -352,11 +352,16 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     "adapted now, but {before[0]:g} to {before[1]:g} were analysed; press Analyze again, or choose "
     "those frames again (Frame Range, in the panel Recording).",
     faults.ChangedMeanwhile: (
-        "Nothing was done, because the armature “{armature}”, its place, keys, repairs, frame "
-        "range or Loop, or the scene's frame rate or unit scale changed since the analysis; press "
-        "Analyze again.",
-        "The result was thrown away, because the armature “{armature}”, its place, keys or "
-        "repairs, or the scene's unit scale changed since the analysis; press Analyze again.",
+        "Nothing was done, because the armature “{armature}”, its bones, place, constraints or "
+        "what they follow, keys, repairs, frame range or Loop, or the scene's frame rate or unit "
+        "scale changed since the analysis; press Analyze again.",
+        "The result was thrown away, because the armature “{armature}”, its bones, place, "
+        "constraints or what they follow, keys or repairs, or the scene's unit scale changed since "
+        "the analysis; press Analyze again.",
+        "Nothing was done, because the armature “{armature}” changed since the analysis "
+        "({changed:names}); press Analyze again.",
+        "The result was thrown away, because the armature “{armature}” changed while it was solved "
+        "({changed:names}); press Analyze again.",
     ),
     faults.BadDimensions: "The figure cannot be reduced to {given} dimensions; choose from 1 to "
     "{most}, or leave them out to have them chosen.",

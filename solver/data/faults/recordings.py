@@ -432,8 +432,10 @@ class SpanChanged(Fault):
 class ChangedMeanwhile(Fault):
     """The armature, its action or its keys are no longer what was analysed or sent to be solved.
 
-    while_solving: whether a result had to be thrown away for it.
+    while_solving: whether a result had to be thrown away for it. changed: its parts that did, in
+    words; nothing where that is not known.
     """
 
     armature: str
     while_solving: bool
+    changed: tuple[str, ...] = ()

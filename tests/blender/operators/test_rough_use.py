@@ -14,6 +14,7 @@ from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.bridge.files.import_clip import import_clip
 from hangtime.bridge.polish.samples import written_of
+from hangtime.bridge.repairs.analysed_state import AnalysedState
 from hangtime.bridge.takes.takes import EDIT_CHANGED, AskedSettings, look_again
 from hangtime.bridge.worker_client import shared
 from hangtime.operators.solve import write_answer as write_answer_module
@@ -87,18 +88,29 @@ def test_a_contact_that_ends_before_it_begins_is_named(run: bpy.types.Object) ->
     assert problem_of(settings, read_recorded(run, None, None)).contacts
 
 
-@pytest.mark.parametrize("change", ["no keys", "uneven scale", "frame rate", "deleted"])
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ("no keys", "its keys"),
+        ("uneven scale", "its scale"),
+        ("frame rate", "frame rate"),
+        ("deleted", "it was removed"),
+        ("renamed", "“Hero” changed while it was solved (its bones)"),
+    ],
+)
 def test_a_change_meanwhile_is_said_to_have_cost_the_result(
-    run: bpy.types.Object, change: str
+    run: bpy.types.Object, change: str, told: str
 ) -> None:
     """Also where what is there now cannot be read at all."""
     recording = read_recorded(run, 1.0, 20.0)
-    settings = AskedSettings.of(run.hangtime)
-    asked = Asked(run.name, run.session_uid, recording, MotionProblem(), settings)
+    settings, state = AskedSettings.of(run.hangtime), AnalysedState.of(run)
+    asked = Asked(run.name, run.session_uid, recording, MotionProblem(), settings, state=state)
     if change == "no keys":
         run.animation_data.action = bpy.data.actions.new("Other")
     elif change == "uneven scale":
         run.scale = (1.0, 1.0, 2.0)
+    elif change == "renamed":
+        run.name, run.data.bones[0].name = "Hero", "Base"
     elif change == "deleted":  # which keeps it in the file until that is saved
         for collection in run.users_collection:
             collection.objects.unlink(run)
@@ -111,7 +123,7 @@ def test_a_change_meanwhile_is_said_to_have_cost_the_result(
     finally:
         session().solving = None
     assert "thrown away" in said(fault.value)
-    assert ("frame rate" in said(fault.value)) == (change == "frame rate")
+    assert told in said(fault.value)
 
 
 @pytest.mark.parametrize("name", ["analyze", "fit"])

@@ -388,8 +388,9 @@ def test_a_sketch_that_is_left_is_no_analysis(analysed: bpy.types.Object) -> Non
     assert not analysis_is_of(settings, read)
 
 
+@pytest.mark.usefixtures("analysed")
 @pytest.mark.slow
-def test_a_frame_rate_that_changed_is_named(analysed: bpy.types.Object) -> None:
+def test_a_frame_rate_that_changed_is_named() -> None:
     """As importing another clip sets it. At the analysis' own all is as before."""
     render = bpy.context.scene.render
     before = render.fps, render.fps_base
@@ -400,13 +401,51 @@ def test_a_frame_rate_that_changed_is_named(analysed: bpy.types.Object) -> None:
     render.fps, render.fps_base = before
     assert bpy.ops.hangtime.fit() == {"FINISHED"}
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
-    told = r"its place, keys, repairs, .* or the scene's frame rate or unit scale changed"
-    analysed.location.x += 1.0
-    with pytest.raises(RuntimeError, match=told):
+
+
+def moved(armature: bpy.types.Object) -> None:
+    armature.location.x += 1.0
+
+
+def key_moved(armature: bpy.types.Object) -> None:
+    curves_of(armature)[0].keyframe_points[150].co[1] += 0.1
+
+
+def constrained(armature: bpy.types.Object) -> None:
+    held = armature.pose.bones["LeftFoot"].constraints.new("LIMIT_ROTATION")
+    held.use_limit_x, held.owner_space = True, "LOCAL"
+
+
+def bone_renamed(armature: bpy.types.Object) -> None:
+    armature.data.bones["LeftFoot"].name = "ankle.L"
+
+
+@pytest.mark.parametrize(
+    ("change", "named"),
+    [
+        (moved, "its place"),
+        (key_moved, "its keys"),
+        (constrained, "its constraints"),
+        (bone_renamed, "its bones"),
+        (lambda a: (moved(a), constrained(a)), "its place, its constraints"),
+    ],
+)
+def test_what_is_not_as_it_was_analysed_is_named(
+    analysed: bpy.types.Object, change: Callable[[bpy.types.Object], object], named: str
+) -> None:
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    change(analysed)
+    with pytest.raises(RuntimeError, match=rf"changed since the analysis \({named}\); press"):
         bpy.ops.hangtime.fit()
-    analysed.location.x -= 1.0
-    curves_of(analysed)[0].keyframe_points[150].co[1] += 0.1
-    with pytest.raises(RuntimeError, match=told):
+
+
+def test_what_changed_since_an_earlier_version_analysed_is_one_of_many(
+    analysed: bpy.types.Object,
+) -> None:
+    """Which kept nothing of it."""
+    analysed.hangtime.property_unset("analysed_state")
+    moved(analysed)
+    with pytest.raises(RuntimeError, match=r"its bones, place, .* or unit scale changed since"):
         bpy.ops.hangtime.fit()
 
 
@@ -424,7 +463,8 @@ def test_a_frame_time_with_fewer_digits_is_the_same_frame_rate(analysed: bpy.typ
 
 def test_a_frame_rate_that_no_one_kept_may_be_what_changed(analysed: bpy.types.Object) -> None:
     """In files of earlier versions."""
-    analysed.hangtime.property_unset("analysed_rate")
+    for kept in ("analysed_rate", "analysed_state"):
+        analysed.hangtime.property_unset(kept)
     bpy.context.scene.render.fps = 24
     with pytest.raises(
         RuntimeError, match=r"or the scene's frame rate .*changed since the analysis"
