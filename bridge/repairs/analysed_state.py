@@ -9,6 +9,7 @@ from zlib import crc32
 
 import bpy
 
+from ...solver.data.faults import ChangedMeanwhile
 from ..accessors import armature_data, pose_of
 from ..armature.actions import recorded_action
 from ..armature.fcurves import holder_in, slot_identifier
@@ -83,6 +84,18 @@ def changed_since_analysis(armature: bpy.types.Object) -> tuple[str, ...]:
     kept."""
     before = STATE.of(settings_of(armature).analysed_state)
     return () if before is None else AnalysedState.of(armature).since(before)
+
+
+def require_in_place(armature: bpy.types.Object) -> None:
+    """Refuse an armature that was moved or scaled since the analysis, whose contacts stay where
+    they were found; without reading its recording. Raises ChangedMeanwhile."""
+    before = STATE.of(settings_of(armature).analysed_state)
+    if before is None:
+        return
+    now, then = Conditions.of(armature), before.conditions
+    changed = SIZE if now.resized(then) else PLACE if now.moved(then) else None
+    if changed is not None:
+        raise ChangedMeanwhile(armature.name, while_solving=False, changed=(changed,))
 
 
 def _constraints(armature: bpy.types.Object) -> list[object]:

@@ -9,10 +9,11 @@ from ...bridge.accessors import present
 from ...bridge.armature.incremental import Incremental
 from ...bridge.armature.poses import require_unstretched
 from ...bridge.properties.settings import settings_of
+from ...bridge.repairs.analysed_state import require_in_place
 from ...bridge.repairs.analysis_key import analysis_is_of
 from ...bridge.scene.members import present_members
 from ...bridge.worker_client import shared
-from ...solver.data.faults import Fault, TimeStretched
+from ...solver.data.faults import ChangedMeanwhile, Fault, RateChanged, SpanChanged
 from ...solver.data.status import DragStatus
 from ...solver.worker.protocol import Answer, Failed, Followed, Progress
 from ..names import OperatorId
@@ -41,6 +42,7 @@ class FollowedDrag(PolledOperator):
         name="Adapt", description="Adapt the motion once the mouse lets go", default=True
     )
     key_hints = ""  # what the header says of keys
+    _void = False  # whether the recording is another than was analysed
 
     @classmethod
     def obstacle(cls, context: bpy.types.Context) -> str | None:
@@ -88,7 +90,8 @@ class FollowedDrag(PolledOperator):
         self._press = Press.of(context, event, click=self.release_confirm)
         try:
             require_unstretched(present(context.scene))
-        except TimeStretched as fault:
+            require_in_place(self._armature)
+        except Fault as fault:
             return self.refuse(said(fault))
         why = ELSEWHERE if context.region_data is None else self.take(context)
         if why is not None:
@@ -177,6 +180,9 @@ class FollowedDrag(PolledOperator):
         return {"CANCELLED"}
 
     def _end(self) -> OperatorResult:
+        if self._void:  # the pin is not where it would be found, and its move would be kept
+            self._back()
+            return self.refuse(self._fault, "WARNING")
         moved = self.let_go()
         self.leave()
         if moved and self.adapt:
@@ -245,6 +251,7 @@ class FollowedDrag(PolledOperator):
             next(self._task)
         except Fault as fault:
             self._fault = said(fault)
+            self._void = isinstance(fault, ChangedMeanwhile | RateChanged | SpanChanged)
             session().failure = failed(fault, self._armature.session_uid, OperatorId.ADAPT)
             live().clear()
             redraw_viewports()  # the panel, too

@@ -25,6 +25,7 @@ from hangtime.operators.solve.session import session
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.status import DragStatus
 from hangtime.solver.worker.protocol import Followed
+from hangtime.tests.blender.helpers.actions import curves_of
 from hangtime.tests.blender.helpers.jump_scene import ask_by_text
 from hangtime.tests.blender.helpers.rows import added
 from hangtime.tests.helpers.clips import JUMP_FRAMES
@@ -218,6 +219,43 @@ def test_what_is_asked_of_an_aimed_head_is_refused_as_the_drag_begins(
     assert told is not None
     assert (told.text, told.uid) == (drag._fault, analysed.session_uid), "the panel tells it, too"
     assert len(asked.problems) == 2, "the worker follows nothing that Adapt would refuse"
+
+
+@pytest.mark.parametrize(
+    ("change", "told"), [("location", "its place"), ("scale", "its scale or the scene")]
+)
+def test_nothing_is_dragged_of_an_armature_that_was_moved_since(
+    analysed, monkeypatch: pytest.MonkeyPatch, change: str, told: str
+) -> None:
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    monkeypatch.setattr(Press, "of", lambda *_, **__: None)
+    setattr(analysed, change, 2.0 * Vector((1.0, 1.0, 1.0)))
+    bpy.context.view_layer.update()
+    drag, row = Drag(analysed), analysed.hangtime.contacts["Left toe 2"]
+    was = Vector(row.at)
+    drag.release_confirm = True
+    assert drag.invoke(bpy.context, None) == {"CANCELLED"}
+    assert told in drag.refused[0]
+    assert "press Analyze again" in drag.refused[0]
+    assert tuple(row.at) == tuple(was)
+    assert not session().running
+
+
+def test_a_drag_of_what_was_not_analysed_is_put_back(analysed, asked: Asked) -> None:
+    row, drag = analysed.hangtime.contacts["Left toe 2"], Drag(analysed)
+    was = Vector(row.at)
+    drag.begin()
+    curves_of(analysed)[0].keyframe_points[150].co[1] += 0.1
+    drag._task, drag._fault = drag._follow(bpy.context), ""
+    for _ in range(1000):
+        if drag._fault:
+            break
+        drag._look()
+    assert drag._end() == {"CANCELLED"}
+    assert tuple(row.at) == tuple(was)
+    assert "changed since the analysis" in drag.refused[0]
+    assert not asked.problems
+    assert live().seen is None
 
 
 def test_a_drag_that_blender_ends_leaves_neither_a_move_nor_a_ghost(analysed) -> None:
