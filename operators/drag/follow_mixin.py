@@ -138,7 +138,7 @@ class FollowedDrag(PolledOperator):
             # would go on with where it was before the last drawing.
             return {"RUNNING_MODAL"}
         keyed = pressed and self.press(event)
-        if keyed or (event.type == "MOUSEMOVE" and self._press.drags(event)):
+        if keyed or (event.type == "MOUSEMOVE" and self._press.drags(context, event)):
             self.pull(context, event)
             self._moved = True
             redraw_views()  # the sidebar's numbers go with the ghost, which waits for no drawing

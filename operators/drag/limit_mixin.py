@@ -81,7 +81,7 @@ class LimitDrag(PolledOperator):
         if released or (event.type in CONFIRM and pressed):
             self._leave()
             return {"FINISHED"} if self.let_go() else {"CANCELLED"}
-        if event.type == "MOUSEMOVE" and self._press.drags(event):
+        if event.type == "MOUSEMOVE" and self._press.drags(context, event):
             self.pull(context, event)
             self._area.header_text_set(f"{self.row.name}: {self.text()}   {KEYS}")
             redraw_viewports()

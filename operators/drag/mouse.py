@@ -40,22 +40,37 @@ def pixel(event: bpy.types.Event) -> Pixel:
     return event.mouse_region_x, event.mouse_region_y
 
 
+def over_bar(context: bpy.types.Context, event: bpy.types.Event) -> bool:
+    """Whether the mouse is over a bar of the viewport, such as the sidebar."""
+    bars = (region for region in present(context.area).regions if region.type != "WINDOW")
+    return any(
+        0 <= event.mouse_x - bar.x < bar.width and 0 <= event.mouse_y - bar.y < bar.height
+        for bar in bars
+    )
+
+
 @dataclass
 class Press:
-    """Press of a mouse button. A click moves nothing, however it trembles."""
+    """Where the mouse takes hold. A click moves nothing, however it trembles, and neither does the
+    way from a button in a bar into the view."""
 
     at: Pixel
     slack: float
     dragging: bool
+    over_bar: bool = False
 
     @staticmethod
     def of(context: bpy.types.Context, event: bpy.types.Event, *, click: bool) -> Press:
-        """click: whether it may still be one, as the button is down."""
+        """click: whether it may still be one, as the button is down, on a handle in the view."""
         slack = SLACK * present(context.preferences).system.ui_scale
-        return Press(pixel(event), slack, dragging=not click)
+        outside = not click and over_bar(context, event)
+        return Press(pixel(event), slack, dragging=not click, over_bar=outside)
 
-    def drags(self, event: bpy.types.Event) -> bool:
+    def drags(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
         """True once it has become a drag."""
         x, y = pixel(event)
+        if self.over_bar:
+            self.at, self.over_bar = (x, y), over_bar(context, event)
+            return False
         self.dragging = self.dragging or max(abs(x - self.at[0]), abs(y - self.at[1])) > self.slack
         return self.dragging
