@@ -22,6 +22,8 @@ from ..solve.adapt import ask_for, followed_problem, unanalysed
 from ..solve.common import failed, required_armature, said
 from ..solve.live import clear_header, live, redraw_viewports, redraw_views
 from ..solve.session import Asked, session
+from ..solve.task import settle
+from ..words.failure_text import Failure
 from ..words.report_text import deeper, higher
 from .mouse import BACK, CONFIRM, GIVEN, Press
 
@@ -41,7 +43,7 @@ class FollowedDrag(PolledOperator):
     adapt: bpy.props.BoolProperty(
         name="Adapt", description="Adapt the motion once the mouse lets go", default=True
     )
-    key_hints = ""  # what the header says of keys
+    key_hints = ""  # what the status bar says of keys
     _void = False  # whether the recording is another than was analysed
 
     @classmethod
@@ -100,10 +102,11 @@ class FollowedDrag(PolledOperator):
         self._idle = self._told = False  # Blender; anything by the worker
         self._fault = self._shown = ""
         self._task = self._follow(context)
-        self._area = present(context.area)
+        self._area, self._window = present(context.area), context.window
         manager = present(context.window_manager)
         self._timer = manager.event_timer_add(LOOK_EVERY, window=context.window)
         session().running.append(self)
+        session().status_bar.say(self.key_hints)
         manager.modal_handler_add(self)
         self._look()
         self._show()
@@ -165,9 +168,14 @@ class FollowedDrag(PolledOperator):
             running.remove(self)
             shared().drop()
             self._task.close()
-            present(bpy.context.window_manager).event_timer_remove(self._timer)
+            manager = present(bpy.context.window_manager)
+            manager.event_timer_remove(self._timer)
             clear_header(self._area)
             redraw_viewports()
+            if self._window in list(manager.windows):
+                session().status_bar.clear()
+            else:  # it is being closed, and until it is no status bar may be told anything
+                bpy.app.timers.register(settle, first_interval=0.0)
 
     @property
     def _confirming(self) -> str:
@@ -238,10 +246,9 @@ class FollowedDrag(PolledOperator):
         if isinstance(message, Progress):
             self._share = message.share
         elif isinstance(message, Failed):
-            self._fault = said(message.fault)
-            live().clear()
+            self._failed(message.fault)
         elif isinstance(message, Followed):
-            self._fault = LOST if message.status is DragStatus.DIVERGED else ""
+            self._fault = ""
             live().show(self._armature.name, message)
 
     def _look(self) -> None:
@@ -250,28 +257,33 @@ class FollowedDrag(PolledOperator):
         try:
             next(self._task)
         except Fault as fault:
-            self._fault = said(fault)
             self._void = isinstance(fault, ChangedMeanwhile | RateChanged | SpanChanged)
-            session().failure = failed(fault, self._armature.session_uid, OperatorId.ADAPT)
-            live().clear()
+            session().failure = self._failed(fault)
             redraw_viewports()  # the panel, too
         except StopIteration:
             pass  # after such a fault
 
+    def _failed(self, fault: Fault) -> Failure:
+        """The header says what to do, and no ghost shows."""
+        failure = failed(fault, self._armature.session_uid, OperatorId.ADAPT)
+        self._fault = failure.cure_first
+        live().clear()
+        return failure
+
     def _show(self) -> None:
-        text = self.text() + self._found()
+        text = self._fault or self.text() + self._found()
         if text != self._shown:  # drawing the header again costs more than a look
             self._shown = text
-            self._area.header_text_set(f"{text}   {self.key_hints}")
+            self._area.header_text_set(text)
 
     def _found(self) -> str:
         seen = live().seen
-        if self._fault:
-            return f" · {self._fault}"
         if not self._press.dragging:
             return ""
         if seen is None:
             return f" · fitting the physics, {100.0 * self._share:.0f} %"
+        if seen.status is DragStatus.DIVERGED:
+            return f" · {LOST}"
         summary = seen.summary
         return (
             f" · crouch {deeper(summary.deeper_cm)}, apex {higher(summary.higher_cm)}, "

@@ -200,9 +200,10 @@ class TaskOperator(ReadyOperator, FaultyOperator):
             bpy.app.timers.register(self._task.close, first_interval=0.0)
         else:
             self._task.close()
+            session().status_bar.clear()  # now: another file may have these workspaces, renumbered
         present(bpy.context.window_manager).event_timer_remove(self._timer)
         _redraw()
-        bpy.app.timers.register(_settle, first_interval=LOOK_AGAIN)
+        bpy.app.timers.register(settle, first_interval=LOOK_AGAIN)
 
     def _show(self) -> None:
         """Only what is new: drawing the sidebar again costs more than a look."""
@@ -213,7 +214,7 @@ class TaskOperator(ReadyOperator, FaultyOperator):
             _redraw()
 
 
-def _settle() -> None:
+def settle() -> None:
     """After work has ended, also by its window being closed, in which nothing may be said then.
 
     What was drawn as it ended is what was before: buttons change their kind a redraw later, and

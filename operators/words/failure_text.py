@@ -46,6 +46,12 @@ class Failure:
         """The short line without what the rows say."""
         return self.short.partition(":")[0] if self.rows else self.short
 
+    @property
+    def cure_first(self) -> str:
+        """One line that may be cut off at its end: what to do, and after it what is wrong."""
+        wrong, _, cure = self.text.partition("; ")
+        return self.short if self.rows or not cure else f"{_begun_large(cure)} {wrong}."
+
 
 def failure_of(fault: Fault, uid: int, of: str, translate: Translate = str) -> Failure:
     """A fault in the sidebar's words."""

@@ -59,8 +59,8 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     faults.NoRootBone: "“{armature}” has no bone above the pelvis “{pelvis}” that could carry root "
     "motion; choose In Place or Hips, or parent the pelvis to a root bone.",
     faults.AimedBone: "“{request}” is about the bone “{bone}”, which the result leaves to the "
-    "constraints or drivers that aim neck or head; mute these, or bake the action and delete them, "
-    "then press Analyze again; or switch “{request}” off.",
+    "constraints or drivers that aim neck or head; mute what aims neck and head, or bake the "
+    "action and delete that, then press Analyze again; or switch “{request}” off.",
     faults.ZeroLengthBone: "The bone “{bone}” has no length, so it cannot carry mass; give it one "
     "in edit mode, or choose another bone for that part of the body.",
     faults.MissingPart: (

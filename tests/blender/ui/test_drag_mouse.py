@@ -20,7 +20,9 @@ CONTEXT = SimpleNamespace(
 
 def mouse(x: int, y: int) -> SimpleNamespace:
     """Where the mouse is in the window, and in the view."""
-    return SimpleNamespace(mouse_x=x, mouse_y=y, mouse_region_x=x - VIEW.x, mouse_region_y=y - VIEW.y)
+    return SimpleNamespace(
+        mouse_x=x, mouse_y=y, mouse_region_x=x - VIEW.x, mouse_region_y=y - VIEW.y
+    )
 
 
 def test_the_way_from_a_button_of_the_sidebar_into_the_view_drags_nothing() -> None:

@@ -10,7 +10,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 import blf
 from hangtime.operators.drag import follow_mixin
-from hangtime.operators.drag.pin_operator import DragPinOperator
+from hangtime.solver.data.status import DragStatus
 from hangtime.ui.drawing.paint import FONT_ID
 from hangtime.ui.overlay.layers.labels import OUTLINE, SHADE
 
@@ -26,11 +26,25 @@ def test_what_a_drag_onto_a_surface_tells_fits_into_a_small_window(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     summary = SimpleNamespace(deeper_cm=-12.3, higher_cm=-10.2, peak_bw=13.1)
-    seen = SimpleNamespace(seen=SimpleNamespace(summary=summary))
+    seen = SimpleNamespace(seen=SimpleNamespace(summary=summary, status=DragStatus.CONVERGED))
     monkeypatch.setattr(follow_mixin, "live", lambda: seen)
-    drag = SimpleNamespace(_fault="", _press=SimpleNamespace(dragging=True))
+    drag = SimpleNamespace(_press=SimpleNamespace(dragging=True))
     place = "Forward -0.350 · Left -0.317 · Up 0.252 m · on Crate"
     found = follow_mixin.FollowedDrag._found(drag)
     blf.size(FONT_ID, LETTERS)
-    told = f"{place}{found}   {DragPinOperator.key_hints}"
-    assert blf.dimensions(FONT_ID, told)[0] < HEADER
+    assert blf.dimensions(FONT_ID, f"{place}{found}")[0] < HEADER
+
+
+def test_a_refused_drag_is_told_before_all_else_and_keys_are_not() -> None:
+    told: list[str] = []
+    drag = SimpleNamespace(
+        _fault="Press Analyze again.",
+        _shown="",
+        text=lambda: "Up 0.252 m",
+        _found=str,
+        _area=SimpleNamespace(header_text_set=told.append),
+    )
+    follow_mixin.FollowedDrag._show(drag)
+    drag._fault = ""
+    follow_mixin.FollowedDrag._show(drag)
+    assert told == ["Press Analyze again.", "Up 0.252 m"]

@@ -25,6 +25,7 @@ from hangtime.solver.data.faults import (
     NoSolution,
     RequestFault,
     SceneFault,
+    SpanChanged,
     TextCure,
     UnseenSupport,
 )
@@ -135,6 +136,15 @@ def test_only_a_part_of_the_way_is_told(reached: float, told: bool) -> None:
     assert "Right elbow bends" in text
     assert ("of the way" in text) is told
     assert ("of the way" in failure_of(fault, 1, "adapt").text) is told
+
+
+def test_a_line_that_may_be_cut_off_begins_with_the_cure() -> None:
+    line = failure_of(SpanChanged(before=(1, 90), now=(1, 60)), 1, "adapt").cure_first
+    assert line.startswith("Press Analyze again, or choose")
+    assert line.endswith(
+        ". Nothing was done, because frames 1 to 60 are to be adapted now, but 1 "
+        "to 90 were analysed."
+    )
 
 
 def test_a_fault_without_words_is_noticed() -> None:
