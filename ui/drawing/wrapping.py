@@ -11,12 +11,14 @@ from .editor import ui_scale
 # px at an interface scale of 1
 MARGINS = 66.0  # the panel's, a box's and the tabs'
 ICON = 26.0
+LEAST_ROOM = 160.0  # a narrower sidebar cuts lines off; words above each other are read by nobody
 
 
 def wrapped(context: bpy.types.Context, text: str, icons: int = 1) -> str:
     """Text in lines that the region has room for, as its font is, beside some icons."""
     scale = ui_scale(context)
     room = present(context.region).width - scale * (MARGINS + icons * ICON)
+    room = max(room, scale * LEAST_ROOM)
     size = scale * present(context.preferences).ui_styles[0].widget.points
 
     def width(words: str) -> float:

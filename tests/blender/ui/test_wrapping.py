@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.ui.drawing import paint
 from hangtime.ui.drawing.wrapping import broken, wrapped
@@ -38,9 +38,14 @@ def test_a_wide_sidebar_has_fewer_lines_and_paragraphs_stay(
     monkeypatch.setattr(paint, "text_width", lambda words, _size: 6.0 * len(words))  # no font here
 
     def count(width: int) -> int:
+        style = SimpleNamespace(widget=SimpleNamespace(points=11.0))
         context = SimpleNamespace(
-            region=SimpleNamespace(width=width), preferences=bpy.context.preferences
+            region=SimpleNamespace(width=width),
+            preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0), ui_styles=[style]),
         )
         return len(wrapped(context, f"{TOLD}\nShort").splitlines())
 
-    assert count(220) > count(290) > count(1000) == 2
+    assert count(255) > count(370) > count(1000) == 2
+    assert count(50) == count(150) < 7, (
+        "a sliver cuts lines off; words above each other are no text"
+    )
