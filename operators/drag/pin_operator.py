@@ -38,7 +38,10 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         "follows as a ghost; letting go adapts. A click chooses it in its list"
     )
     bl_options = {"REGISTER", "UNDO", "BLOCKING", "GRAB_CURSOR"}
-    key_hints = "X Y Z: axis · Shift: finer · Ctrl: steps, off surfaces · Esc: back"
+    key_hints = (
+        "X Y Z: axis · Shift: finer · Ctrl: steps, off surfaces · Esc: back · "
+        "numbers: in the sidebar"
+    )
 
     contact: bpy.props.IntProperty(
         name="Contact",
@@ -157,7 +160,7 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         moved = (f"{name} {round(by, 3) + 0.0:.3f}" for name, by in zip(names, shift, strict=True))
         way = f"Along {self._drag.axis.name}: " if self._drag.axis is not None else ""
         standing = f" · on {self._standing}" if self._standing else ""
-        return f"{way}{' · '.join(moved)} m{standing}"
+        return f"{way}{' · '.join(moved)} m from here{standing}"
 
     # -- where ---------------------------------------------------------------------------------
 

@@ -13,10 +13,10 @@ RIGS: dict[type[Fault], str | tuple[str, ...]] = {
     "turns them by itself, so a result could not be written; bake them (pose mode, Pose > "
     "Animation > Bake Action, Visual Keying) and mute the constraints, or choose other bones "
     "under Bones.",
-    faults.PulledFromOutside: "The bones {bones:few} are pulled towards {targets:names} by "
-    "constraints ({constraints:names}), and no bone of the armature moves that, so a result could "
-    "not be written; bake the action with Visual Keying (Object > Animation > Bake Action), then "
-    "mute the constraints.",
+    faults.PulledFromOutside: "Constraints ({constraints:names}) pull {bones:few} towards "
+    "{targets:names}, and no bone of the armature moves that, so a result could not be written; "
+    "bake the action with Visual Keying (Object > Animation > Bake Action), then mute the "
+    "constraints.",
     faults.DrivenBones: "Drivers pose the bones {bones:few} whatever keys they have, so a result "
     "could not be written; bake the action and delete these drivers, or choose other bones under "
     "Bones.",

@@ -358,7 +358,7 @@ def test_legs_that_are_pulled_from_outside_the_armature_are_refused_before_a_sol
 ) -> None:
     """Though the bones above them, by which the hips shift, would turn them, too."""
     targets = pulled_legs(jump)
-    told = "LeftLeg, RightLeg are pulled towards Left target, Right target by constraints .IK."
+    told = "Constraints .IK. pull LeftLeg, RightLeg towards Left target, Right target"
     with pytest.raises(RuntimeError, match=told):
         bpy.ops.hangtime.analyze()
     for target in targets:
@@ -381,7 +381,7 @@ def test_a_knee_that_turns_towards_what_is_outside_the_armature_is_refused_likew
     pole = bpy.data.objects.new("Knee", None)
     bpy.context.scene.collection.objects.link(pole)
     jump.pose.bones["LeftLeg"].constraints[0].pole_target = pole
-    with pytest.raises(RuntimeError, match="The bones LeftLeg are pulled towards Knee by"):
+    with pytest.raises(RuntimeError, match="pull LeftLeg towards Knee"):
         bpy.ops.hangtime.analyze()
 
 

@@ -29,7 +29,7 @@ def test_what_a_drag_onto_a_surface_tells_fits_into_a_small_window(
     seen = SimpleNamespace(seen=SimpleNamespace(summary=summary, status=DragStatus.CONVERGED))
     monkeypatch.setattr(follow_mixin, "live", lambda: seen)
     drag = SimpleNamespace(_press=SimpleNamespace(dragging=True))
-    place = "Forward -0.350 · Left -0.317 · Up 0.252 m · on Crate"
+    place = "Forward -0.350 · Left -0.317 · Up 0.252 m from here · on Crate"
     found = follow_mixin.FollowedDrag._found(drag)
     blf.size(FONT_ID, LETTERS)
     assert blf.dimensions(FONT_ID, f"{place}{found}")[0] < HEADER
