@@ -129,14 +129,19 @@ def test_a_spoilt_trajectory_fails(
 def test_unseen_support_is_told_and_breaks_no_limit(tmp_path: Path) -> None:
     """Half of each force is of something unseen, which pushes at the same points."""
     t = sound()
-    shares, without = t["contact_force"] / 2, ("contact_place", "contact_normal", "contact_friction")
+    shares, without = (
+        t["contact_force"] / 2,
+        ("contact_place", "contact_normal", "contact_friction"),
+    )
     peak = np.linalg.norm(shares.sum(axis=1), axis=1).max() / (9.81 * t["mass"].sum())
     unseen = {key: np.full_like(t[key], np.nan) for key in without}
     unseen |= {"contact_point": t["contact_point"], "contact_force": shares}
     unseen |= {"contact_slides": np.zeros_like(t["contact_slides"])}
     t["contact_force"] = shares
     t |= {key: np.concatenate([t[key], more], axis=1) for key, more in unseen.items()}
-    t["contact_names"] = np.array([*t["contact_names"], *len(t["contact_names"]) * [UNSEEN_SUPPORT]])
+    t["contact_names"] = np.array(
+        [*t["contact_names"], *len(t["contact_names"]) * [UNSEEN_SUPPORT]]
+    )
     code, table = checked(t, tmp_path)
     assert (code, missed(table)) == (0, set())
     assert float(told(table, "unseen support, peak").split()[0]) == pytest.approx(peak, rel=0.01)
