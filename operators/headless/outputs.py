@@ -41,6 +41,7 @@ if TYPE_CHECKING:  # as in clip.py
 
     from ...bridge.controls.control_rig import ControlRig
     from ...bridge.loops.write_loop import WrittenLoop
+    from ...bridge.picture.sheet import SheetRow
     from ...bridge.properties.of_actions.known_contacts import SolvedContacts
     from ...bridge.takes.plan import AdaptedMotion
     from ...bridge.takes.span import WrittenTake
@@ -186,14 +187,17 @@ class Outputs:
         from .picture import both_rows, draw, draw_moving
 
         adaptation, problem = self.result.adaptation, self.result.subject.problem
-        marks = recorded_on(adaptation, problem.scene), marks_of(adaptation, problem)
-        rows = both_rows(adaptation, self.clip.problem, *marks)
+
+        def rows() -> tuple[SheetRow, SheetRow]:
+            marks = recorded_on(adaptation, problem.scene), marks_of(adaptation, problem)
+            return both_rows(adaptation, self.clip.problem, *marks)
+
         if picture:
             with self.stages.stage("Drawing the picture"), quiet():
-                draw(adaptation, rows, self.outbox.path(PICTURE))
+                draw(adaptation, rows(), self.outbox.path(PICTURE))
         if film:
             with self.stages.stage("Drawing the film"), quiet():
-                draw_moving(adaptation, rows, self.outbox.path(FILM))
+                draw_moving(adaptation, rows(), self.outbox.path(FILM))
 
     def write_failure(self) -> None:
         """The report, and the best motion that was found."""

@@ -10,7 +10,7 @@ from ..arrays import BoolArray, FloatArray
 from ..data.constants import STANDARD_GRAVITY, UP
 from ..data.contacts import ContactSchedule, Interval
 from ..data.faults import CarriedBy, FitNeedsSupport, OffBalance
-from ..data.problem import MotionProblem, Unseen
+from ..data.problem import AddedContact, MotionProblem, Unseen
 from ..data.recording import Recording
 from ..data.reports.constraints import (
     CARRIES,
@@ -47,7 +47,7 @@ def unseen_support(fit: Fit, motion: Motion) -> Iterator[UnseenSupportReport]:
     moment = np.cross(arms - arms.mean(axis=1, keepdims=True), each).sum(axis=1)
     sizes, moments = (np.linalg.norm(v, axis=1) for v in (each.sum(axis=1), moment))
     acts = np.linalg.norm(each, axis=2).sum(axis=1) > CARRIES
-    for first, last in _intervals(times, sizes > CARRIES, acts):
+    for first, last in support_intervals(times, sizes > CARRIES, acts):
         part = slice(first, last + 1)
         peak = first + int(sizes[part].argmax())
         yield UnseenSupportReport(
@@ -60,15 +60,28 @@ def unseen_support(fit: Fit, motion: Motion) -> Iterator[UnseenSupportReport]:
         )
 
 
-def _intervals(times: FloatArray, carries: BoolArray, acts: BoolArray) -> list[tuple[int, int]]:
+def support_intervals(
+    times: FloatArray, carries: BoolArray, acts: BoolArray
+) -> list[tuple[int, int]]:
     """First and last index of each interval in which something (T,) carries, and of those between
     them in which it acts all the same, in order. What is nearer than APART is one, and so long a
     one between is at least: a force that rises or fades acts before it carries."""
-    carried, turned = _joined(times, carries), acts.copy()
-    for first, last in carried:
-        turned[first : last + 1] = False
-    lasting = [(a, b) for a, b in _joined(times, turned) if times[b] - times[a] > APART]
+    carried = _joined(times, carries)
+    lasting = [
+        (first + a, first + b)
+        for first, last in runs(_between(carried, len(times)))
+        for a, b in _joined(times[first : last + 1], acts[first : last + 1])
+        if times[first + b] - times[first + a] > APART
+    ]
     return sorted([*carried, *lasting])
+
+
+def _between(parts: Sequence[tuple[int, int]], count: int) -> BoolArray:
+    """(count,) whether an index is in none of the parts (first, last)."""
+    between = np.ones(count, dtype=bool)
+    for first, last in parts:
+        between[first : last + 1] = False
+    return between
 
 
 def _joined(times: FloatArray, mask: BoolArray) -> list[tuple[int, int]]:
@@ -104,11 +117,17 @@ def hints_left(
         lasting = ((frames[a], frames[b]) for a, b in some if b - a >= SURELY_LASTS * rate)
         return tuple((float(first), float(last)) for first, last in lasting)
 
-    hints = (
-        replace(e, spans=cut(e.spans), resting=cut(e.resting)) if isinstance(e, OffBalance) else e
-        for e in told
-    )
+    def kept(hint: OffBalance) -> OffBalance:
+        spans = cut(hint.spans)
+        hands = (h for h in hint.hands if any(_overlap(h, span) for span in spans))
+        return replace(hint, spans=spans, resting=cut(hint.resting), hands=tuple(hands))
+
+    hints = (kept(each) if isinstance(each, OffBalance) else each for each in told)
     return [hint for hint in hints if not isinstance(hint, OffBalance) or hint.spans]
+
+
+def _overlap(contact: AddedContact, span: Span) -> bool:
+    return contact.start_frame < span[1] and contact.end_frame > span[0]
 
 
 def _as_recorded(spans: Sequence[Span], result: Report) -> list[Span]:

@@ -30,7 +30,7 @@ def continuation(
     on_the_way = _on_the_way(setup)
     motion, schedule = setup.start, setup.schedule
     before = last = setup.fitted.with_places(motion.places)
-    whole = stance_moves(schedule, before, setup.target, setup.turns)
+    whole = stance_moves(schedule, before, setup.target, setup.turns, setup.seats)
     steps = times * continuation_steps(whole)
     outcomes: list[Outcome] = []
     for step in range(1, steps + 1):
@@ -41,7 +41,7 @@ def continuation(
             standing = setup.target.slowed(step / steps, before).with_places(places)
         if step < steps and standing.moves:
             transcription = transcription.riding(standing.rides)
-        start = warm_start(motion, stance_moves(schedule, last, standing))
+        start = warm_start(motion, stance_moves(schedule, last, standing, seats=setup.seats))
         if transcription.seam is not None:
             start = transcription.seam.closed(start, setup.metric)
         if step == 1:  # where nothing is gripped this changes nothing

@@ -21,6 +21,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
+from ..data.contacts import Interval
 from ..data.problem import MotionProblem
 from ..data.reports.report import DragSummary
 from ..data.status import DragStatus
@@ -34,7 +35,14 @@ from ..transcription.motion import Motion
 from .implicit import Adaptation
 from .platforms import find_standing
 from .setup import Setup, set_up
-from .warm_start import Standing, continuation_steps, partial_places, stance_moves, warm_start
+from .warm_start import (
+    Standing,
+    continuation_steps,
+    partial_places,
+    seats,
+    stance_moves,
+    warm_start,
+)
 
 SWEEPS = 2  # a step; the next update goes on with what they leave
 MOST_STEPS = 2  # an update; the second where the first leaves more than HELD_VIOLATION
@@ -70,6 +78,7 @@ class Follower:
             self.motion = Motion(last.outcome.transcription, last.outcome.x, last.places)
             self._metric = self.setup.metric_of(self.motion)
             self._standing = Standing.of(self.motion)
+        self._seats = self.setup.seats  # of the metric
         self._rested = 0  # updates at one place
         self._linearised: LinearisedProblem | None = None
         self._value: FloatArray | None = None  # of the rows, at the motion; None: not known
@@ -94,13 +103,14 @@ class Follower:
             self._retime(problem)
         self._problem = problem
         target, schedule, was = self._target(problem), self.setup.schedule, self._standing
-        whole = stance_moves(schedule, was, target)
+        self._seat(seats(schedule, self.setup.fitted, target))
+        whole = stance_moves(schedule, was, target, seats=self._seats)
         steps = continuation_steps(whole)
         if steps > 1:
             places = partial_places(schedule, was.places, target.places, whole, 1.0 / steps)
             share = was.share + (1.0 - was.share) / steps
             target = target.slowed(share, self.setup.fitted).with_places(places)
-        x = warm_start(self.motion, stance_moves(schedule, was, target))
+        x = warm_start(self.motion, stance_moves(schedule, was, target, seats=self._seats))
         self._guard()
         if not self._step(x, target):
             (self.motion, self._standing), self._linearised = self._held, None
@@ -138,7 +148,7 @@ class Follower:
         start, target = setup.start, setup.target
         feasible = setup.feasible_set(start.transcription, target.places)
         still = setup.fitted.with_places(start.places)
-        x = warm_start(start, stance_moves(setup.schedule, still, target))
+        x = warm_start(start, stance_moves(setup.schedule, still, target, seats=setup.seats))
         found = restore(feasible, setup.metric, x, stage="drag", max_steps=RETIMING_STEPS)
         motion = feasible.motion(found.x)
         if found.violation < HELD_VIOLATION and not _astray(motion, setup.sparse_guards):
@@ -150,6 +160,13 @@ class Follower:
         self.setup, self.motion, self._metric = setup, start, setup.metric
         self._standing, self._linearised, self._timed = standing, None, problem
         self._held, self._looked_at = (start, standing), start.places
+        self._seats = setup.seats
+
+    def _seat(self, found: tuple[Interval, ...]) -> None:
+        """Measures by whether the body stays on a seat with pins as they are now."""
+        if found != self._seats:
+            self._seats, self._metric = found, self.setup.metric_of(self.motion, found)
+            self._linearised = None
 
     def _guard(self) -> None:
         """Rows for what is in each other, or beyond its range, now; without those that are far

@@ -5,6 +5,7 @@ changes the transcription, so the fit is resampled on a new one as an initial gu
 of that kind is asked for, the fit's own transcription serves.
 """
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
@@ -14,7 +15,7 @@ from ..analysis.timeline import TimeWarp
 from ..arrays import BoolArray, FloatArray
 from ..constraints.constraint_builder import build_constraints
 from ..constraints.evaluation_context import EvaluationContext
-from ..data.contacts import ContactSchedule
+from ..data.contacts import ContactSchedule, Interval
 from ..data.loop import LEAST_TRAVEL
 from ..data.problem import MotionProblem
 from ..data.recording import Recording
@@ -38,12 +39,11 @@ from ..solid.solid_world import SolidWorld
 from ..transcription.motion import Motion
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
 from ..transcription.transcription import Transcription
-from ..unseen.resting import resting
 from .anticipation import anticipate
 from .footing import pin_turns
 from .requested import kept_intervals, requested, retimed_jumps, travel_at
 from .surroundings import surroundings
-from .warm_start import Standing
+from .warm_start import Standing, resting, seats
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,8 @@ class Setup:
     changes of a block that a reduction allows, None all. requests: those set up here. recording: of
     the figure as it is asked for. space: the reduced coordinates, None where there are none.
     durations: where they come from. changes: of the solid shapes. scene: what is around. price: of
-    turning joints, which is in the metric; None for a figure that is no human.
+    turning joints, which is in the metric; None for a figure that is no human. seats: the stances
+    in which the body rests on something that stays.
     """
 
     fit: Fit
@@ -75,6 +76,7 @@ class Setup:
     changes: ShapeChanges
     scene: tuple[SceneObject, ...] = ()
     price: JointPrice | None = None
+    seats: tuple[Interval, ...] = ()
 
     def feasible_set(
         self, transcription: Transcription, places: FloatArray | None = None
@@ -83,9 +85,11 @@ class Setup:
         places = self.target_places if places is None else places
         return FeasibleSet(transcription, places, self.basis)
 
-    def metric_of(self, motion: Motion) -> BlockBanded:
-        """Metric W of the minimum-norm steps from a motion of this problem."""
-        rests = _resting(motion, self.schedule, self.fitted, self.target)
+    def metric_of(self, motion: Motion, seated: tuple[Interval, ...] | None = None) -> BlockBanded:
+        """Metric W of the minimum-norm steps from a motion of this problem. seated: other seats
+        than its own."""
+        seated = self.seats if seated is None else seated
+        rests = _resting(motion, self.schedule, seated, self.requests)
         metric = motion_metric(motion, _cost_weights(self.requests), self.price, rests)
         if _weighs_torques(self.requests):
             metric.lower += torque_metric(motion, self.torques).lower
@@ -155,7 +159,8 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     start = _with_constraints(start, problem, context)
     same = start.transcription.basis is fit.motion.transcription.basis and reference is fit.motion
     weights = _cost_weights(requests)
-    rests = _resting(start, context.schedule, asked.fitted, target)
+    seated = seats(context.schedule, asked.fitted, target)
+    rests = _resting(start, context.schedule, seated, requests)
     kept = same and weights is ADAPT_COST_WEIGHTS and price is not None and not rests.any()
     metric = fit.metric if kept else motion_metric(start, weights, price, rests)
     if _weighs_torques(requests):
@@ -182,6 +187,7 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
         asked.changes,
         problem.scene,
         price,
+        seated,
     )
 
 
@@ -242,10 +248,18 @@ def _weighs_torques(requests: Requests) -> bool:
 
 
 def _resting(
-    motion: Motion, schedule: ContactSchedule, fitted: Standing, target: Standing
+    motion: Motion,
+    schedule: ContactSchedule,
+    seated: Collection[Interval],
+    requests: Requests,
 ) -> BoolArray:
-    """(N,) the dynamics nodes of a motion at which it rests on what stays where it was."""
-    return resting(schedule, fitted.moved_to(target), motion.transcription.node_times)
+    """(N,) the dynamics nodes of a motion at which the pelvis is kept where it rests; none where
+    the artist says where it shall be."""
+    t = motion.transcription
+    asked = {p.bone for p in requests.points} | {o.bone for o in requests.orientations}
+    if t.character.bodies[0].bone in asked:
+        seated = ()
+    return resting(schedule, seated, t.node_times)
 
 
 def _cost_weights(requests: Requests) -> CostWeights:

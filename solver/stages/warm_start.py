@@ -7,12 +7,12 @@ continuation, in several steps.
 """
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..contacts.footfalls import footfalls
 from ..data.contacts import ContactSchedule, Interval, gaps
 from ..numerics.rotations import axis_rotation, planar_turn
@@ -20,7 +20,6 @@ from ..numerics.splines import dense_instants, greville_abscissae
 from ..transcription.motion import Motion
 from ..transcription.ride import Ride
 from ..transcription.transcription import Transcription
-from ..unseen.resting import MOVED, resting
 
 MAX_SHIFT_PER_STEP = 0.5  # m, of a continuation step
 MAX_SPEED_PER_STEP = 1.5  # m/s, by which a landing or a stance changes speed
@@ -29,7 +28,9 @@ LOWEST_SAMPLES = 50  # of a contact's height on moving ground
 TOGETHER = 0.05  # s, within which both feet leave, or come down
 UNEQUAL = 0.02  # m, by which a rigid move of all that stands may miss; toes bend, ground is uneven
 UNEQUAL_TURN = np.radians(1.0)  # of a foot to that move's, likewise; on, a way goes off by as much
-STANCE_RATE = 60.0  # Hz, at which a stance is sampled
+RIDE_RATE = 60.0  # Hz, at which the move of a stance on moving ground is sampled
+MOVED = 1e-3  # m; a contact that goes less far stays where it was
+MOSTLY = 0.5  # of a stance; where something unseen carries for less, the body goes on its feet
 
 
 @dataclass(frozen=True)
@@ -73,11 +74,6 @@ class Standing:
 
     def with_places(self, places: FloatArray) -> "Standing":
         return Standing(places, self.rides)
-
-    def moved_to(self, after: "Standing") -> list[bool]:
-        """Of each contact, whether it stands elsewhere after, or rides."""
-        away = np.linalg.norm(after.places - self.places, axis=1) > MOVED
-        return [bool(a) or ride is not None for a, ride in zip(away, after.rides, strict=True)]
 
     def slowed(self, share: float, recorded: "Standing") -> "Standing":
         """On ground that moves at a share of its speed, but for what was recorded on it."""
@@ -152,33 +148,29 @@ def stance_moves(
     before: Standing,
     after: Standing,
     wanted: Mapping[str, float] | None = None,
+    seats: Collection[Interval] = (),
 ) -> tuple[RigidMove, ...]:
     """Least-squares rigid move (planar Kabsch) of each stance's contacts.
 
     Grips and other contacts that were asked for move nothing: the arms reach for them (arm_ik.py).
-    Who rests on something stays on it, and reaches for where feet are moved to.
     wanted: turns of contacts, by names, rad. Places alone cannot tell a half turn left from one
     right, nor a whole turn from none; without a wish a stance is turned as the one before it ended.
-    Of a single point they tell no turn at all: it is the one that is wished.
+    Of a single point they tell no turn at all: it is the one that is wished. seats: the stances in
+    which the body stays, and reaches for where its feet are moved to.
     """
     moves: list[RigidMove] = []
-    turned, goes = 0.0, before.moved_to(after)
-    for stance in _stances(schedule):
-        mine = [
-            i
-            for i, c in enumerate(schedule.contacts)
-            if c.start < stance.end and c.end > stance.start and not c.asked_for
-        ]
-        sampled = 2 + int(STANCE_RATE * (stance.end - stance.start))
-        times = np.linspace(stance.start, stance.end, sampled)
-        if resting(schedule, goes, times).any():
-            mine = [i for i in mine if not goes[i]]
-        if all(standing.rides[i] is None for standing in (before, after) for i in mine):
-            times = times[:1]
+    turned = 0.0
+    for stance in stances(schedule):
+        mine = standing_in(schedule, stance)
+        times = np.array([stance.start])
+        if any(standing.rides[i] is not None for standing in (before, after) for i in mine):
+            count = 2 + int(RIDE_RATE * (stance.end - stance.start))
+            times = np.linspace(stance.start, stance.end, count)
         turns = ((wanted or {}).get(schedule.contacts[i].name, 0.0) for i in mine)
         wish = max(turns, key=abs)
         asked = turned + wish
-        move = _least_squares(stance.start, stance.end, times, mine, (before, after), asked)
+        standings = (before, before) if stance in seats else (before, after)
+        move = rigid_move(stance, times, mine, standings, asked)
         if len(mine) == 1 and wish:
             move = replace(move, turns=move.turns + asked - move.turns[0])
         turned += float(move.turns[-1] - move.turns[0])
@@ -186,12 +178,21 @@ def stance_moves(
     return tuple(moves)
 
 
-def _stances(schedule: ContactSchedule) -> tuple[Interval, ...]:
+def stances(schedule: ContactSchedule) -> tuple[Interval, ...]:
     """Intervals, s, in which contacts that were found stand; between them the body flies, hangs
     where it was asked to, or something unseen carries it from one stance to the next."""
     found = ((c.start, c.end) for c in schedule.contacts if not c.asked_for)
     between = ((each.start, each.end) for each in gaps(found, schedule.duration))
     return gaps(between, schedule.duration)
+
+
+def standing_in(schedule: ContactSchedule, stance: Interval) -> list[int]:
+    """Indices of the contacts that were found and touch in a stance."""
+    return [
+        i
+        for i, c in enumerate(schedule.contacts)
+        if c.start < stance.end and c.end > stance.start and not c.asked_for
+    ]
 
 
 def end_move(
@@ -210,7 +211,7 @@ def end_move(
     end, turn = last.times[-1:], float(last.turns[-1])
 
     def moved(contacts: Sequence[int]) -> RigidMove:
-        return _least_squares(last.start, last.end, end, contacts, (before, after), turn)
+        return rigid_move(last, end, contacts, (before, after), turn)
 
     move = moved(mine)
     if len(mine) == 1:
@@ -234,21 +235,61 @@ def _last_down(schedule: ContactSchedule, feet: Sequence[list[int]]) -> list[lis
     return [f for f, at in zip(feet, landed, strict=True) if at > max(landed) - TOGETHER]
 
 
-def _least_squares(
-    start: float,
-    end: float,
+def rigid_move(
+    stance: "Interval | RigidMove",
     times: FloatArray,
     contacts: Sequence[int],
     standings: tuple[Standing, Standing],
     asked: float,
 ) -> RigidMove:
-    """asked: rad, the turn at the start, to a whole turn."""
+    """The least-squares rigid move of contacts at instants (T,) s of a stance.
+
+    standings: before and after. asked: rad, the turn at the start, to a whole turn.
+    """
     old, new = (np.stack([each.at(i, times) for i in contacts], axis=1) for each in standings)
     pivots, to = old.mean(axis=1), new.mean(axis=1)
     a, b = old - pivots[:, None], new - to[:, None]
     turns = np.unwrap(planar_turn(a, b))
     turns += 2 * np.pi * np.round((asked - turns[0]) / (2 * np.pi))
-    return RigidMove(start, end, times, pivots, turns, to - pivots)
+    return RigidMove(stance.start, stance.end, times, pivots, turns, to - pivots)
+
+
+def seats(schedule: ContactSchedule, before: Standing, after: Standing) -> tuple[Interval, ...]:
+    """The stances of `stance_moves` in which what carries the body unseen stays where it was: some
+    contacts are moved and others are not, or otherwise, as by who sits. Where all that stands is
+    moved as one, what carries unseen goes with it.
+    """
+    found = []
+    for stance in stances(schedule):
+        mine = standing_in(schedule, stance)
+        rides = any(each.rides[i] is not None for each in (before, after) for i in mine)
+        carried = sum(_shared(stance, each) for each in schedule.unseen)
+        if rides or carried < MOSTLY * (stance.end - stance.start):
+            continue
+        old, new = before.places[mine], after.places[mine]
+        away = np.linalg.norm(new - old, axis=1)
+        start = np.array([stance.start])
+        move = rigid_move(stance, start, mine, (before, after), 0.0)
+        off = np.linalg.norm(move.of(old, np.repeat(start, len(mine))) - new, axis=1)
+        if away.max() > MOVED and (away.min() <= MOVED or off.max() > UNEQUAL):
+            found.append(stance)
+    return tuple(found)
+
+
+def resting(
+    schedule: ContactSchedule, seated: Collection[Interval], times: FloatArray
+) -> BoolArray:
+    """(T,) whether at instants (T,) s something unseen carries in one of the `seats`."""
+    return _within(schedule.unseen, times) & _within(seated, times)
+
+
+def _within(intervals: Collection[Interval], times: FloatArray) -> BoolArray:
+    within = [(times >= each.start) & (times <= each.end) for each in intervals]
+    return np.asarray(np.any(np.reshape(within, (-1, len(times))), axis=0))
+
+
+def _shared(one: Interval, other: Interval) -> float:
+    return max(0.0, min(one.end, other.end) - max(one.start, other.start))
 
 
 def warm_start(motion: Motion, moves: tuple[RigidMove, ...]) -> FloatArray:
