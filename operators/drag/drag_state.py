@@ -97,6 +97,11 @@ class PinDrag(_Drag):
         self._land(holds=not snap and self.axis is not Axis.Z)
         return self.place
 
+    def set(self, shift: Vector) -> Vector:
+        """The same by numbers, wherever the mouse is, which goes on from there."""
+        self._loose = self._mouse = shift
+        return self.move(shift)
+
     def _land(self, *, holds: bool) -> None:
         """Takes the height of the face that the pin is above or below. holds: False lets go."""
         self.landing = None
@@ -157,6 +162,11 @@ class ValueDrag(_Drag):
             value = self.step * round(value / self.step)
         self._value = min(max(value, self.low), self.high)
         return self._value
+
+    def set(self, by: float) -> float:
+        """The same by a number, wherever the mouse is, which goes on from there."""
+        self._loose = self._mouse = by
+        return self.move(by)
 
     def let_go(self) -> bool:
         """Returns whether the value has changed."""

@@ -26,6 +26,7 @@ from ..solve.task import settle
 from ..words.failure_text import Failure
 from ..words.report_text import deeper, higher
 from .mouse import BACK, CONFIRM, GIVEN, Press
+from .typed_number import TypedNumber
 
 LOST = "no motion follows there; the ghost stays where it last could"
 ELSEWHERE = "Drag in a 3D viewport"
@@ -58,6 +59,10 @@ class FollowedDrag(PolledOperator):
 
     def pull(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
         """The mouse is elsewhere."""
+        raise NotImplementedError
+
+    def put_by(self, number: float) -> None:
+        """Moves it by a number that is typed, from where it was taken."""
         raise NotImplementedError
 
     def press(self, _event: bpy.types.Event) -> bool:
@@ -101,6 +106,7 @@ class FollowedDrag(PolledOperator):
         self._moved, self._share = True, 0.0
         self._idle = self._told = False  # Blender; anything by the worker
         self._fault = self._shown = ""
+        self._typed = TypedNumber()
         self._task = self._follow(context)
         self._area, self._window = present(context.area), context.window
         manager = present(context.window_manager)
@@ -140,9 +146,16 @@ class FollowedDrag(PolledOperator):
             # The worker goes on with where the mouse is, which follows: with the first of these it
             # would go on with where it was before the last drawing.
             return {"RUNNING_MODAL"}
-        keyed = pressed and self.press(event)
-        if keyed or (event.type == "MOUSEMOVE" and self._press.drags(context, event)):
-            self.pull(context, event)
+        if pressed and self._typed.key(event.type, event.ascii):
+            self._press.dragging = keyed = True
+        else:
+            keyed = pressed and self.press(event)
+        moved = event.type == "MOUSEMOVE" and self._press.drags(context, event)
+        if keyed or (moved and not self._typed):
+            if self._typed:
+                self.put_by(self._typed.value)
+            else:
+                self.pull(context, event)
             self._moved = True
             redraw_views()  # the sidebar's numbers go with the ghost, which waits for no drawing
         self._idle = event.type == "TIMER"
@@ -271,7 +284,8 @@ class FollowedDrag(PolledOperator):
         return failure
 
     def _show(self) -> None:
-        text = self._fault or self.text() + self._found()
+        typed = f"[{self._typed}] " if self._typed else ""
+        text = self._fault or typed + self.text() + self._found()
         if text != self._shown:  # drawing the header again costs more than a look
             self._shown = text
             self._area.header_text_set(text)

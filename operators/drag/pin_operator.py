@@ -39,8 +39,8 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO", "BLOCKING", "GRAB_CURSOR"}
     key_hints = (
-        "X Y Z: axis · Shift: finer · Ctrl: steps, off surfaces · Esc: back · "
-        "numbers: in the sidebar"
+        "X Y Z: axis · 0 to 9: metres along it, or forward · Shift: finer · "
+        "Ctrl: steps, off surfaces · Esc: back"
     )
 
     contact: bpy.props.IntProperty(
@@ -123,6 +123,20 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         x, y, z = (float(each) for each in self._metres * now - np.array(self._drag.start))
         to = self._drag.move((x, y, z), precise=event.shift, snap=event.ctrl)
         self._put(Vector(to) / self._metres, self._standing)
+
+    def put_by(self, number: float) -> None:
+        x, y, z = (number * each for each in self._typed_way)
+        self._put(Vector(self._drag.set((x, y, z))) / self._metres, self._standing)
+
+    @property
+    def _typed_way(self) -> tuple[float, ...]:
+        """Where numbers lead, world: along the axis, else the first that the header tells."""
+        axis, row = self._drag.axis, self._row
+        if axis is not None:
+            return tuple(float(i == axis.value) for i in range(3))
+        found = isinstance(row, HangtimeContact)
+        stance = settings_of(self._armature).stances.get(row.phase) if found else None
+        return (1.0, 0.0, 0.0) if stance is None else tuple(stance.forward_axis)
 
     @property
     def held(self) -> str:

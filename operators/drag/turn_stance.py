@@ -1,6 +1,6 @@
 """Turn Stance: about the vertical by the mouse, while the motion follows as a ghost."""
 
-from math import degrees, inf
+from math import degrees, inf, radians
 
 import bpy
 import numpy as np
@@ -28,7 +28,7 @@ class TurnStanceOperator(FollowedDrag, bpy.types.Operator):
         "letting go adapts"
     )
     bl_options = {"REGISTER", "UNDO", "BLOCKING"}
-    key_hints = "Shift: finer · Ctrl: steps of 5° · Esc: back"
+    key_hints = "0 to 9: degrees · Shift: finer · Ctrl: steps of 5° · Esc: back"
 
     by: bpy.props.FloatProperty(
         name="By", description="Counter-clockwise seen from above", subtype="ANGLE"
@@ -42,7 +42,7 @@ class TurnStanceOperator(FollowedDrag, bpy.types.Operator):
         stance.turn += self.by
         return {"FINISHED"}
 
-    def take(self, context: bpy.types.Context) -> str | None:
+    def take(self, _context: bpy.types.Context) -> str | None:
         settings = settings_of(self._armature)
         stance = active_stance(settings)
         if stance is None or (middle := stance_middle(settings, stance.name)) is None:
@@ -52,15 +52,21 @@ class TurnStanceOperator(FollowedDrag, bpy.types.Operator):
         radius = max((Vector(c.at) - middle).xy.length for c in contacts)
         x, y = np.eye(3)[:2]
         self._circle = Circle(np.array(middle.to_tuple()), x, y, max(radius, 1e-6))
-        self._began = self._angle = angle_about(ray_at(context, self._press.at), self._circle, 0.0)
+        self._began: float | None = None  # rad, of where the mouse takes hold
         self._drag = ValueDrag(stance.turn, -inf, inf, ANGLE_STEP)
         return None
 
     def pull(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
+        if self._began is None:
+            at = ray_at(context, self._press.at)
+            self._began = self._angle = angle_about(at, self._circle, 0.0)
         self._angle = angle_about(ray_at(context, pixel(event)), self._circle, self._angle)
         self._stance.turn = self._drag.move(
             self._angle - self._began, precise=event.shift, snap=event.ctrl
         )
+
+    def put_by(self, number: float) -> None:
+        self._stance.turn = self._drag.set(radians(number))
 
     @property
     def held(self) -> str:

@@ -160,3 +160,22 @@ def test_a_value_that_was_put_back_is_what_it_was() -> None:
     assert drag.put_back() == 0.5
     assert drag.value == 0.5
     assert not ValueDrag(0.5, 0.0, 1.0, STEP).let_go()
+
+
+def test_a_number_moves_a_pin_wherever_the_mouse_is_and_that_goes_on_from_there() -> None:
+    drag = PinDrag(START)
+    drag.move((0.5, 0.5, 0.0))
+    assert drag.set((0.2, 0.0, 0.0)) == pytest.approx((1.2, 2.0, 0.0))
+    assert drag.move((0.3, 0.4, 0.0)) == pytest.approx((1.3, 2.4, 0.0))
+
+
+def test_a_number_on_an_axis_is_of_that_alone() -> None:
+    drag = PinDrag(START, Axis.Z)
+    assert drag.set((0.0, 0.0, -0.1)) == pytest.approx((1.0, 2.0, -0.1))
+
+
+def test_a_number_changes_a_value_by_as_much_from_its_start() -> None:
+    drag = ValueDrag(radians(10.0), -inf, inf, STEP)
+    drag.move(radians(33.0))
+    assert drag.set(radians(-15.0)) == pytest.approx(radians(-5.0))
+    assert drag.move(radians(1.0)) == pytest.approx(radians(11.0))

@@ -99,7 +99,7 @@ def test_what_is_asked_of_an_aimed_head_is_refused_by_name(jump: bpy.types.Objec
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
     ask_by_text(jump, '[[orientation]]\nname = "Look up"\nbone = "Head"\ntilt = -20\n')
     before = SceneState.of(jump)
-    with pytest.raises(RuntimeError, match=r"“Look up” is about the bone “Head”.*mute these"):
+    with pytest.raises(RuntimeError, match=r"“Look up” is about the bone “Head”.*mute what aims"):
         bpy.ops.hangtime.adapt()
     assert SceneState.of(jump) == before
 

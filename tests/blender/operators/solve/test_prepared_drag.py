@@ -19,6 +19,7 @@ from hangtime.bridge.worker_client import shared
 from hangtime.operators.drag import follow_mixin
 from hangtime.operators.drag.follow_mixin import FollowedDrag
 from hangtime.operators.drag.mouse import Press
+from hangtime.operators.drag.typed_number import TypedNumber
 from hangtime.operators.solve.analyze import _prepare_drag
 from hangtime.operators.solve.live import live
 from hangtime.operators.solve.session import session
@@ -76,6 +77,7 @@ class Drag(FollowedDrag):
     def __init__(self, armature: bpy.types.Object) -> None:
         self._armature = armature
         self._press = Press((0.0, 0.0), slack=3.0, dragging=False)
+        self._typed = TypedNumber()
         self.refused: list[str] = []
 
     def begin(self) -> None:
@@ -271,6 +273,26 @@ def test_a_drag_that_blender_ends_leaves_neither_a_move_nor_a_ghost(analysed) ->
     row.at = was + Vector((0.0, 1.0, 0.0))
     drag.cancel(bpy.context)
     assert tuple(row.at) != tuple(was), "a drag that has ended moves nothing any more"
+
+
+def test_what_is_typed_leads_until_it_is_deleted(analysed) -> None:
+    """The mouse, too, moves meanwhile, as a hand that types shakes it."""
+    drag, led = Drag(analysed), list[object]()
+    drag.put_by, drag.pull = led.append, lambda *_: led.append("mouse")
+    drag._look = drag._show = lambda: None
+    drag.begin()
+    context = SimpleNamespace(region_data=True)
+    mouse = SimpleNamespace(
+        type="MOUSEMOVE", value="NOTHING", ascii="", mouse_region_x=50, mouse_region_y=50
+    )
+    drag.modal(context, mouse)
+    for kind, character in (("ONE", "1"), ("MINUS", "-")):
+        drag.modal(context, SimpleNamespace(type=kind, value="PRESS", ascii=character))
+        drag.modal(context, mouse)
+    for _ in range(2):
+        drag.modal(context, SimpleNamespace(type="BACK_SPACE", value="PRESS", ascii=""))
+    drag.modal(context, mouse)
+    assert led == ["mouse", 1.0, -1.0, 0.0, "mouse", "mouse"]
 
 
 @pytest.mark.parametrize("ends", ["modal", "cancel"])
