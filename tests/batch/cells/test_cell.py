@@ -92,6 +92,7 @@ def assert_certificate(result: CellResult, report: dict[str, Any]) -> None:
     assert figures["certificate_worse_than_recorded"] == len(failed) - len(alike)
 
 
+@pytest.mark.slow
 def test_a_cell_that_is_solved_is_not_solved_again(batch: Path) -> None:
     cell = cells(batch)[0].cell
     first = run_cell(batch, cell)

@@ -10,6 +10,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 import blf
 from hangtime.operators.drag import follow_mixin
+from hangtime.operators.drag.typed_number import TypedNumber
 from hangtime.solver.data.status import DragStatus
 from hangtime.ui.drawing.paint import FONT_ID
 from hangtime.ui.overlay.layers.labels import OUTLINE, SHADE
@@ -40,6 +41,7 @@ def test_a_refused_drag_is_told_before_all_else_and_keys_are_not() -> None:
     drag = SimpleNamespace(
         _fault="Press Analyze again.",
         _shown="",
+        _typed=TypedNumber(),
         text=lambda: "Up 0.252 m",
         _found=str,
         _area=SimpleNamespace(header_text_set=told.append),
@@ -47,4 +49,6 @@ def test_a_refused_drag_is_told_before_all_else_and_keys_are_not() -> None:
     follow_mixin.FollowedDrag._show(drag)
     drag._fault = ""
     follow_mixin.FollowedDrag._show(drag)
-    assert told == ["Press Analyze again.", "Up 0.252 m"]
+    drag._typed.key("TWO", "2")
+    follow_mixin.FollowedDrag._show(drag)
+    assert told == ["Press Analyze again.", "Up 0.252 m", "[2] Up 0.252 m"]
