@@ -32,7 +32,7 @@ from ...solver.data.requests import Requests
 from ...solver.doctor.examination.diagnose import diagnose
 from ...solver.doctor.stretch import Span
 from ...solver.results.fit_quality import fit_quality
-from ...solver.results.unseen_support import refuse_unseen
+from ...solver.results.unseen_support import hints_left, refuse_unseen
 from ...solver.worker.pipeline import Subject, measure, no_fit, solve
 from ..planning.blender_need import needs_blender, require_blender
 from ..planning.clips import clip_sha256
@@ -112,7 +112,10 @@ def adapt_cell(
         )
     if Output.BVH in settings.outputs and result.fault is None:
         write_motion(result, loaded.origin, outbox)
-    advice = [explained(each, None) for each in together(loaded.subject.analysis.unseen)]
+    left = loaded.subject.analysis.unseen
+    if result.fault is None:
+        left = tuple(hints_left(left, report, result.schedule, result.recording))
+    advice = [explained(each, None) for each in together(left)]
     told = (*headline(report), *warning_lines(report), *advice)
     return Done(told, figures(report), result.fault)
 

@@ -51,7 +51,7 @@ def main(argv: list[str]) -> int:
 def run_all(suites: Mapping[str, list[str]], folder: Path, limits: Limits) -> int:
     """1 where a suite fails. They run side by side, and are told one after the other.
 
-    Several keep the cores busy by themselves: threads for one solve would cost them a tenth.
+    Several keep the cores busy by themselves, beside which threads of one solve gain nothing.
     """
     variables = os.environ | ({SOLVER_THREADS: "1"} if len(suites) > 1 else {})
     with ThreadPoolExecutor() as pool, contextlib.ExitStack() as logs:
