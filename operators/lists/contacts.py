@@ -31,8 +31,8 @@ class AddContactOperator(PolledOperator, bpy.types.Operator):
     bl_idname = OperatorId.ADD_CONTACT
     bl_label = "Add Contact"
     bl_description = (
-        "Let a heel, toe or hand touch from the current frame on, where it was recorded, or where "
-        "its stance was moved to; adjust its frames"
+        "Let a heel, toe, hand or knee touch from the current frame on, where it was recorded, or "
+        "where its stance was moved to; adjust its frames"
     )
     bl_options = {"REGISTER", "UNDO"}
     bl_property = "point"

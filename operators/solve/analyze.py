@@ -30,10 +30,10 @@ from ...solver.analysis.take import require_inside
 from ...solver.data.contacts import ContactSchedule
 from ...solver.data.faults import (
     Fault,
-    Hint,
     LostEdits,
     MissingPart,
     OddHeight,
+    OffBalance,
     OutsideKeys,
     SourceOutsideKeys,
     UnseenSupport,
@@ -324,7 +324,7 @@ def _snapped(settings: HangtimeSettings, asked: tuple[float, float]) -> str:
 
 def _is_carried(answer: Analysed) -> bool:
     """Whether something that is not seen carries the body, or a floor that moves."""
-    return any(not isinstance(each, Hint) for each in answer.unseen)
+    return any(not isinstance(each, OffBalance) for each in answer.unseen)
 
 
 def _analysed(

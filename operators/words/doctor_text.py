@@ -72,8 +72,6 @@ SENTENCES = {
     "does under load but on what moves.",
     FindingKind.OFF_BALANCE: "The weight is beside the feet {where}, as of who sits, leans or is "
     "on hands: something carries it that the recording does not show.",
-    FindingKind.KNEELING: "A knee rests on the floor {where}. Knees have no contacts, so forces "
-    "and torques of the legs are not to be believed there.",
     FindingKind.BEGINS_IN_AIR: "The clip begins in the air.",
     FindingKind.ENDS_IN_AIR: "The clip ends in the air.",
 }

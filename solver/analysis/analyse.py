@@ -30,8 +30,6 @@ from ..data.faults import (
     ClipTooShort,
     FramesFarApart,
     FramesReversed,
-    Hint,
-    KneesRest,
     OffBalance,
     Treadmill,
     UnknownContactName,
@@ -47,7 +45,6 @@ from ..scene.support import boxes_beneath
 from ..unseen.free_fall import falls_beside_unseen, unseen_support
 from .balance import (
     SURELY_LASTS,
-    kneels,
     lasting,
     low_palms,
     off_balance,
@@ -81,7 +78,7 @@ class Analysis:
 
     unseen: what was found where something unseen carries the body, one for each interval of the
     schedule; of feet that slide steadily one for all. After that, no more than hints, where the
-    weight is beside what touches, and where knees rest on the floor.
+    weight is beside what touches.
     """
 
     performance: Performance
@@ -120,7 +117,7 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     told = tuple(_told(performance, schedule, skids))
     if told and problem.unseen is Unseen.REFUSE:
         raise told[0]
-    return Analysis(performance, schedule, (*told, *_hints(performance, schedule)))
+    return Analysis(performance, schedule, (*told, *_off_balance(performance, schedule)))
 
 
 def _performed(
@@ -182,13 +179,6 @@ def _told(
             skidding=on_floor and gap in slid,
             resting=on_floor and gap not in slid,
         )
-
-
-def _hints(performance: Performance, schedule: ContactSchedule) -> Iterator[Hint]:
-    """What may carry the body, as the fit tells, beside what surely does."""
-    yield from _off_balance(performance, schedule)
-    if knees := kneels(performance):
-        yield KneesRest(_spans(performance, knees))
 
 
 def _off_balance(performance: Performance, schedule: ContactSchedule) -> Iterator[OffBalance]:
@@ -295,7 +285,7 @@ def skids_in(performance: Performance, gaps: Sequence[Interval]) -> tuple[Interv
     def slides(gap: Interval) -> bool:
         inside, ways = _inside(performance, gap), [0.0]
         for point in points.values():
-            if point.kind is not PointKind.HAND:
+            if point.kind.is_of_foot:
                 low = point.track[:, 2] - floor_m < point.max_height
                 places = point.track[inside & low, :2]
                 ways += np.ptp(places, axis=0).tolist() if len(places) else []

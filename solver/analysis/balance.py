@@ -7,7 +7,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
-from ..body.anatomy import Part
 from ..body.dynamics import MomentFunction
 from ..data.constants import STANDARD_GRAVITY, UP
 from ..data.contacts import ContactSchedule, Interval, PointKind
@@ -22,8 +21,7 @@ LASTS = 0.2  # s; walks, runs and jumps have up to 0.13, a hop that lands on one
 SURELY_LASTS = 0.5  # s; longer than these, and than what joints that tremble by 9 mm make of it
 SMOOTHING = 0.06  # s, standard deviation; who leans does so for longer
 LOADED = 0.3  # body weights, upwards; a smaller force meets the ground anywhere
-STILL = 0.1  # m/s; slower is the pelvis of who sits, or stands and leans, and a knee that carries
-KNEELING = 0.06  # of the height, above the floor; the joint of a knee on it is at 0.03 to 0.05
+STILL = 0.1  # m/s; slower is the pelvis of who sits, or stands and leans
 _AROUND = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
 _WAYS = np.stack([np.cos(_AROUND), np.sin(_AROUND)])  # (2, W) unit vectors along the ground
 
@@ -115,19 +113,6 @@ def pelvis_at_rest(performance: Performance) -> tuple[BoolArray, BoolArray]:
     track, (_, floor_m) = performance.centres[:, 0], contact_points(performance)
     low = track[:, 2] - floor_m < LEANING * performance.character.height
     return _speed(performance, track) < STILL, np.asarray(low)
-
-
-def kneels(performance: Performance) -> tuple[Interval, ...]:
-    """Where a knee rests on the floor, of which contacts know nothing."""
-    times, (_, floor_m) = performance.times, contact_points(performance)
-    high = floor_m + KNEELING * performance.character.height
-    rests = np.zeros(len(times), dtype=np.bool_)
-    for i, body in enumerate(performance.character.bodies):
-        if body.part is Part.SHANK:
-            knee = performance.centres[:, i]
-            rests |= (knee[:, 2] < high) & (_speed(performance, knee) < STILL)
-    found = (Interval(float(times[a]), float(times[b])) for a, b in runs(rests))
-    return tuple(each for each in found if each.end - each.start >= LASTS)
 
 
 def lasting(performance: Performance, mask: BoolArray, gap: Interval) -> Iterator[Interval]:

@@ -1,9 +1,9 @@
 """Grounding: contacts as feet can keep them, on the floor and with time to step between places.
 
-Soles and floors give by millimetres, and a recording's skeleton does not know them. A place near
-the floor is put upon it; at a landing and a lift-off the point may be as high above its place as a
-sole gives, and as the recording shows it. A foot that slides is at one place and then at the next;
-in between it is not loaded.
+Soles and floors give by millimetres, and a recording's skeleton does not know them. A sole's place
+near the floor is put upon it; at a landing and a lift-off the point may be as high above its place
+as a sole gives, and as the recording shows it. A foot that slides is at one place and then at the
+next; in between it is not loaded.
 """
 
 from collections.abc import Mapping, Sequence
@@ -189,7 +189,9 @@ def _grounded(
     ground_m = ground.beneath(contact)
     height = float(contact.place[2]) - ground_m
     if abs(height) < NEAR_FLOOR:
-        height = float(np.clip(height, *PLACE_BAND))
+        low, high = PLACE_BAND
+        # The point of a hand or a knee is within its flesh, which keeps it off the floor.
+        height = float(np.clip(height, low, high if contact.touch.is_of_foot else NEAR_FLOOR))
     place = np.array([*contact.place[:2], ground_m + height])
     track = _track(contact, performance, ground)
     ends = np.array([contact.start, contact.end])

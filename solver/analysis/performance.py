@@ -30,6 +30,7 @@ from .soles import FootTracks, floor_height, foot_points
 
 SNAP_FRAMES = 1.5
 MIN_SNAP_TOLERANCE = 0.012  # s; instants nearer than this share a knot
+KNEE_DEPTH = 0.04  # of the height; a knee's joint is 0.03 to 0.05 of it above what it rests on
 PALM_DEPTH = 0.03  # of the height; a hand's bone is so far above the floor that its palm is on
 LEANING = 0.07  # of the height, above the floor; wrists and knees on it are at 0.03 to 0.05
 
@@ -132,7 +133,8 @@ def snap_tolerance(performance: Performance) -> float:
 
 
 def contact_points(performance: Performance) -> tuple[dict[str, ContactPoint], float]:
-    """Candidate contact points by name (heel and toe of each foot, hands), and floor height, m."""
+    """Candidate contact points by name (heel and toe of each foot, hands, knees), and floor height,
+    m."""
     if performance.longer is not None:
         points, floor_m = contact_points(performance.longer)
         first = int(np.searchsorted(performance.longer.times, performance.times[0]))
@@ -143,9 +145,11 @@ def contact_points(performance: Performance) -> tuple[dict[str, ContactPoint], f
     floor_m = floor_height(performance.times, feet, stature_m)
     points = foot_points(performance.times, feet, floor_m, stature_m)
     for side in (Side.LEFT, Side.RIGHT):
-        hand = performance.character.body(Part.HAND, side)
+        hand, shank = (performance.character.body(part, side) for part in (Part.HAND, Part.SHANK))
         if hand is not None:
             points[f"{side.value.capitalize()} hand"] = _palm(performance, hand)
+        if shank is not None:
+            points[f"{side.value.capitalize()} knee"] = _knee(performance, shank)
     return points, floor_m
 
 
@@ -165,7 +169,7 @@ def leans(performance: Performance, floor_m: float) -> BoolArray:
 
 def low_feet(points: Mapping[str, ContactPoint], floor_m: float) -> BoolArray:
     """(T,) whether a point of a foot is as low as one that stands, however it moves."""
-    feet = [point for point in points.values() if point.kind is not PointKind.HAND]
+    feet = [point for point in points.values() if point.kind.is_of_foot]
     low = [point.track[:, 2] - floor_m < point.max_height for point in feet]
     return np.asarray(np.any(low, axis=0))
 
@@ -178,6 +182,13 @@ def _palm(performance: Performance, hand: int) -> ContactPoint:
     rest = recording.bones[recording.index(body.bone)].rotation
     depth = PALM_DEPTH * performance.character.height
     return ContactPoint(PointKind.HAND, body.bone, rest.T @ place, track, depth=depth)
+
+
+def _knee(performance: Performance, shank: int) -> ContactPoint:
+    """Contact point in the joint of a knee, about which the shank turns while it rests."""
+    bone, track = performance.character.bodies[shank].bone, performance.centres[:, shank]
+    depth = KNEE_DEPTH * performance.character.height
+    return ContactPoint(PointKind.KNEE, bone, np.zeros(3), track, depth=depth)
 
 
 def _foot(performance: Performance, side: Side) -> FootTracks:

@@ -13,7 +13,6 @@ from ..data.contacts import (
     ContactSchedule,
     ContactThresholds,
     Interval,
-    PointKind,
     gaps,
     numbered,
 )
@@ -66,7 +65,7 @@ def detect_contacts(
         for name, point in points.items()
         for touch in _touches(clock, name, point, movements[name], ground or level(floor_m))
     ]
-    feet = {name: movements[name] for name, p in points.items() if p.kind is not PointKind.HAND}
+    feet = {name: movements[name] for name, p in points.items() if p.kind.is_of_foot}
     touches = joined_over_noise(clock, touches, feet, ground or level(floor_m))
     for carrier in carriers:
         touches += _carried(times, clock, points, carrier)

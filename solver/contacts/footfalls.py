@@ -1,4 +1,4 @@
-"""Footfalls: what of a foot touches from where it comes down to where it leaves."""
+"""Footfalls: what of a leg touches from where it comes down to where it leaves."""
 
 from collections.abc import Sequence
 
@@ -6,14 +6,14 @@ from ..data.contacts import Touch
 
 
 def footfalls(touches: Sequence[Touch]) -> tuple[tuple[int, ...], ...]:
-    """Indices of touches, those of each limb together that share some time with each other or with
-    one between them: from where a foot comes down to where it leaves; by their starts."""
+    """Indices of touches, those of each leg or arm together that share some time with each other
+    or with one between them: from where a foot comes down to where it leaves; by their starts."""
     found: list[list[int]] = []
 
     def goes_on(mine: Sequence[int], touch: Touch) -> bool:
         until = max(touches[i].end for i in mine)
         rolls = until == touch.start and all(touches[i].point != touch.point for i in mine)
-        return touches[mine[0]].limb == touch.limb and (until > touch.start or rolls)
+        return touches[mine[0]].leg == touch.leg and (until > touch.start or rolls)
 
     for i in sorted(range(len(touches)), key=lambda i: touches[i].start):
         mine = next((step for step in found if goes_on(step, touches[i])), None)
@@ -26,8 +26,8 @@ def footfalls(touches: Sequence[Touch]) -> tuple[tuple[int, ...], ...]:
 
 def takes_steps(touches: Sequence[Touch]) -> bool:
     """Whether a limb comes down again, as in a walk."""
-    limbs = [touches[mine[0]].limb for mine in footfalls(touches)]
-    return len(set(limbs)) < len(limbs)
+    legs = [touches[mine[0]].leg for mine in footfalls(touches)]
+    return len(set(legs)) < len(legs)
 
 
 def stood_on_first(touches: Sequence[Touch]) -> frozenset[int]:

@@ -68,6 +68,20 @@ class PointKind(Enum):
         min_rest=0.15,  # where it turns back in the air a hand is slow for half of that
         min_duration=0.15,
     )
+    KNEE = ContactThresholds(
+        max_height=0.035,
+        max_speed=0.15,
+        landing_height=0.015,
+        lift_off_height=0.015,
+        max_slip_speed=0.3,
+        min_rest=0.2,
+        min_duration=0.2,
+    )
+
+    @property
+    def is_of_foot(self) -> bool:
+        """Whether it is of what people stand on."""
+        return self in (PointKind.HEEL, PointKind.TOE)
 
 
 @dataclass(frozen=True)
@@ -158,8 +172,18 @@ class Touch:
     @property
     def limb(self) -> str:
         """Such as "Left foot"; a hand, or a point of the artist's own, is one by itself."""
+        return f"{self.point.rpartition(' ')[0]} foot" if self.is_of_foot else self.point
+
+    @property
+    def leg(self) -> str:
+        """Its limb, but of a knee the foot that the shank ties to it."""
         side, _, part = self.point.rpartition(" ")
-        return f"{side} foot" if part in ("heel", "toe") else self.point
+        return f"{side} foot" if part == "knee" else self.limb
+
+    @property
+    def is_of_foot(self) -> bool:
+        """Whether its point is on a sole."""
+        return self.point.rpartition(" ")[2] in ("heel", "toe")
 
 
 @dataclass(frozen=True)

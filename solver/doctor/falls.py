@@ -12,7 +12,6 @@ import numpy as np
 from ..analysis.performance import Performance, contact_points, leans
 from ..arrays import FloatArray
 from ..data.constants import STANDARD_GRAVITY
-from ..data.contacts import PointKind
 from ..numerics.runs import runs
 from ..scene.fall_rate import usual_rates
 from .finding import Finding, FindingKind
@@ -82,7 +81,7 @@ def each_fall(performance: Performance, trusted: Trusted = ALL) -> tuple[FloatAr
     """(N, 2) accelerations downwards, m/s², and durations, s, of those that are trusted and are
     parabolas, and their scene frames."""
     points, floor = contact_points(performance)
-    feet = [point.track[:, 2] for point in points.values() if point.kind is not PointKind.HAND]
+    feet = [point.track[:, 2] for point in points.values() if point.kind.is_of_foot]
     height = performance.character.height
     up = (np.min(feet, axis=0) - floor > CLEAR * height) & ~leans(performance, floor)
     times, com, frames = performance.times, performance.com[:, 2], performance.recording.frames

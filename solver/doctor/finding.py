@@ -42,7 +42,6 @@ class FindingKind(Enum):
     UNSEEN_SUPPORT = "unseen support"
     SKIDDING = "skidding"
     OFF_BALANCE = "off balance"
-    KNEELING = "kneeling"
     BEGINS_IN_AIR = "begins in the air"
     ENDS_IN_AIR = "ends in the air"
 
@@ -57,7 +56,6 @@ _NOTES = (
     FindingKind.UNSEEN_SUPPORT,
     FindingKind.SKIDDING,
     FindingKind.OFF_BALANCE,
-    FindingKind.KNEELING,
     FindingKind.BEGINS_IN_AIR,
     FindingKind.ENDS_IN_AIR,
 )

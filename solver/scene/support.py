@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..data.contacts import Contact, ContactPoint, ContactSchedule, Interval, PointKind
+from ..data.contacts import Contact, ContactPoint, ContactSchedule, Interval
 from ..data.recording import Recording
 from ..data.scene import SceneObject, SceneRole, SupportBox
 from .carrier import REACH, Carrier
@@ -158,7 +158,7 @@ def on_boxes(boxes: Sequence[SupportBox], ground: Heights) -> Heights:
 
 def _rests(times: FloatArray, points: Mapping[str, ContactPoint], during: BoolArray) -> _Rests:
     """Where points of the feet rest: of those that do at an instant, the lowest carry."""
-    feet = {name: point for name, point in points.items() if point.kind is not PointKind.HAND}
+    feet = {name: point for name, point in points.items() if point.kind.is_of_foot}
     resting = np.array([_resting(times, point, during) for point in feet.values()])
     tracks = np.array([point.track for point in feet.values()])
     height = np.where(resting, tracks[..., 2], np.inf)

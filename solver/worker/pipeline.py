@@ -22,9 +22,9 @@ from ..body.inverse_dynamics import InverseDynamics
 from ..constraints.bone_names import check_bones
 from ..data.contacts import ContactSchedule, gaps
 from ..data.faults import (
-    Hint,
     NoFit,
     NoSolution,
+    OffBalance,
     Treadmill,
     UnseenSupport,
     computable,
@@ -240,7 +240,8 @@ def measure(recording: Recording, problem: MotionProblem) -> Subject:
     except (UnseenSupport, Treadmill) as fault:
         raise _unscaled(fault, factor) from None
     unseen = tuple(
-        each if isinstance(each, Hint) else _unscaled(each, factor) for each in analysis.unseen
+        each if isinstance(each, OffBalance) else _unscaled(each, factor)
+        for each in analysis.unseen
     )
     away = floated(made, problem, float(analysis.performance.recording.frames[-1]))
     return Subject(replace(analysis, unseen=unseen), problem, height, factor, cycle, away)

@@ -228,9 +228,6 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
         "({hands:contacts}): Add Contact, the + beside the contacts of a stance, or an "
         "[[add_contact]] in a recipe.",
     ),
-    faults.KneesRest: "In frames {spans:spans} a knee rests on the floor. Knees have no contacts, "
-    "so feet, hands or something unseen carry in the fit what the knee does: do not believe "
-    "forces and torques of the legs there. To keep the knee in its place give the shin a Point.",
     faults.FitNeedsSupport: "No motion comes near the recording unless something unseen carries "
     "the body in frames {spans:spans}, which the recipe refuses; correct the frames of the "
     "contacts there, add what does carry it (a contact, or an [[object]] that is ground), choose "

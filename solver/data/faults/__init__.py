@@ -20,8 +20,6 @@ from .recordings import ClipTooShort as ClipTooShort
 from .recordings import FitNeedsSupport as FitNeedsSupport
 from .recordings import FramesFarApart as FramesFarApart
 from .recordings import FramesReversed as FramesReversed
-from .recordings import Hint as Hint
-from .recordings import KneesRest as KneesRest
 from .recordings import LibraryMissing as LibraryMissing
 from .recordings import LostEdits as LostEdits
 from .recordings import MirroredInBlender as MirroredInBlender

@@ -321,13 +321,6 @@ class OffBalance(Fault):
 
 
 @dataclass
-class KneesRest(Fault):
-    """A knee rests on the floor in spans (first, last frame), of which contacts know nothing."""
-
-    spans: tuple[tuple[float, float], ...]
-
-
-@dataclass
 class FitNeedsSupport(Fault):
     """No motion comes near the recording but with something unseen that carries the body, in spans
     (first, last frame), which its problem refuses."""
@@ -342,8 +335,7 @@ class Treadmill(Fault):
     speed: float
 
 
-Hint = OffBalance | KneesRest  # of what may carry it
-CarriedBy = UnseenSupport | Treadmill | Hint  # what is told of what carries a recording
+CarriedBy = UnseenSupport | Treadmill | OffBalance  # what is told of what carries a recording
 
 
 @dataclass

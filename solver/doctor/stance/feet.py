@@ -9,7 +9,7 @@ import numpy as np
 
 from ...analysis.performance import Performance, contact_points
 from ...arrays import BoolArray, FloatArray
-from ...data.contacts import ContactPoint, PointKind
+from ...data.contacts import ContactPoint
 from ...numerics.runs import runs
 from ..falls import Spans
 from ..finding import Finding, FindingKind
@@ -52,7 +52,7 @@ def find_feet(performance: Performance) -> tuple[FootFault, ...]:
     performance: as seen from what it stands on, which is at 0 (`as_stood`).
     """
     points, floor = contact_points(performance)
-    feet = {n: p for n, p in points.items() if p.kind is not PointKind.HAND}
+    feet = {n: p for n, p in points.items() if p.kind.is_of_foot}
     lowest = np.min([point.track[:, 2] for point in feet.values()], axis=0)
     found = []
     for name, point in feet.items():

@@ -9,11 +9,11 @@ from itertools import pairwise
 import numpy as np
 
 from ...analysis.analyse import skids_in
-from ...analysis.balance import SURELY_LASTS, kneels, off_balance
+from ...analysis.balance import SURELY_LASTS, off_balance
 from ...analysis.performance import Performance, contact_points, find_contacts
 from ...arrays import FloatArray
 from ...contacts.noisy_touches import MAX_BREAK
-from ...data.contacts import ContactSchedule, Interval, PointKind
+from ...data.contacts import ContactSchedule, Interval
 from ...data.recording import Recording
 from ...numerics.runs import runs
 from ...scene.support import boxes_beneath
@@ -54,8 +54,8 @@ FLICKERS = 3
 def find_footing(
     performance: Performance, schedule: ContactSchedule | None = None
 ) -> list[Finding]:
-    """Floor, feet below it, flicker, unseen support, feet that skid, weight beside them, knees
-    on the floor, and a clip that begins or ends in the air.
+    """Floor, feet below it, flicker, unseen support, feet that skid, weight beside them, and
+    a clip that begins or ends in the air.
 
     performance: as seen from what it stands on. schedule: its contacts, with the scene's ground;
     None for those with the floor alone.
@@ -71,7 +71,6 @@ def find_footing(
         (FindingKind.UNSEEN_SUPPORT, tuple(u for u in schedule.unseen if u not in skids)),
         (FindingKind.SKIDDING, skids),
         (FindingKind.OFF_BALANCE, off_balance(performance, schedule, SURELY_LASTS)),
-        (FindingKind.KNEELING, kneels(performance)),
         (FindingKind.BEGINS_IN_AIR, tuple(f for f in schedule.flights if f.start == 0.0)),
         (
             FindingKind.ENDS_IN_AIR,
@@ -124,7 +123,7 @@ def _sinking(performance: Performance) -> Finding | None:
     """Feet that are for more than a frame deeper than the lowest height on which they stand: a
     moment of it changes neither the floor nor the spread of heights that tells a floating body."""
     points, floor = contact_points(performance)
-    feet = {name: p for name, p in points.items() if p.kind is not PointKind.HAND}
+    feet = {name: p for name, p in points.items() if p.kind.is_of_foot}
     depths = np.stack([floor - point.track[:, 2] for point in feet.values()])
     places = [(first, last) for first, last in runs(depths.max(axis=0) > SUNK) if first < last]
     if not places:
@@ -239,7 +238,7 @@ def standing(performance: Performance, high: float = LOW) -> LowestPoint:
     """When, where and how fast the lowest point of the feet stands, near its floor. high: m above
     that."""
     points, floor = contact_points(performance)
-    feet = [point.track for point in points.values() if point.kind is not PointKind.HAND]
+    feet = [point.track for point in points.values() if point.kind.is_of_foot]
     tracks = np.stack(feet, axis=1)
     velocity = np.gradient(tracks, performance.times, axis=0)
     lowest = np.argmin(tracks[:, :, 2], axis=1), np.arange(len(tracks))

@@ -10,7 +10,7 @@ from hangtime.operators.words.messages import sentence
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.balance import SURELY_LASTS, off_balance
 from hangtime.solver.analysis.performance import contact_points
-from hangtime.solver.data.faults import KneesRest, OffBalance
+from hangtime.solver.data.faults import OffBalance
 from hangtime.solver.data.problem import MotionProblem, Unseen
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.examination.diagnose import diagnose
@@ -92,32 +92,6 @@ def test_hands_in_mid_air_or_that_slide_carry_nothing(height: float, speed: floa
     (told,) = analyse(recording, MotionProblem()).unseen
     assert isinstance(told, OffBalance)
     assert told.hands == ()
-
-
-def with_knee(height: float, speed: float = 0.0) -> Recording:
-    """Who stands still, the left knee so high above the floor, of his height; speed: m/s."""
-    recording = still(leaned(0.0))
-    performance = analyse(recording, MotionProblem()).performance
-    _, floor_m = contact_points(performance)
-    knee, heads = recording.index("LeftLeg"), recording.heads.copy()
-    heads[:, knee, 2] = floor_m + height * performance.character.height
-    heads[:, knee, 0] += speed * recording.times
-    return replace(recording, heads=heads)
-
-
-def test_a_knee_on_the_floor_is_told_and_the_doctor_notes_it() -> None:
-    recording = with_knee(0.03)
-    (told,) = analyse(recording, MotionProblem()).unseen
-    assert isinstance(told, KneesRest)
-    assert told.spans == ((1.0, 90.0),)
-    assert sentence(told).startswith("In frames 1 to 90 a knee rests on the floor.")
-    notes = [finding_sentence(each) for each in diagnose(recording).findings]
-    assert any(note.startswith("A knee rests on the floor in frames 1 to 90") for note in notes)
-
-
-@pytest.mark.parametrize(("height", "speed"), [(0.08, 0.0), (0.03, 0.5)])
-def test_a_knee_in_mid_air_or_that_passes_does_not_rest(height: float, speed: float) -> None:
-    assert analyse(with_knee(height, speed), MotionProblem()).unseen == ()
 
 
 def test_the_doctor_notes_who_leans() -> None:

@@ -384,7 +384,7 @@ def test_feet_stand_on_the_floor_and_stay_there(clip: str) -> None:
     first, last = found.phases[0], found.phases[-1]
     for phase in (first, last):
         touching = {c.point for c in found.of_phase(phase)}
-        assert touching == {name for name in points if "hand" not in name}
+        assert touching == {name for name, point in points.items() if point.kind.is_of_foot}
     for side in ("Left", "Right"):
         heel, toe = (
             [c for c in found.contacts if c.point == f"{side} {e}"] for e in ("heel", "toe")
