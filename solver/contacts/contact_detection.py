@@ -27,6 +27,8 @@ from .point_movement import MAX_SLIDE, STEP, PointMovement, even_clock, point_mo
 
 MIN_SEPARATION = 0.03  # s; between two contacts of one point
 CREEP_WINDOW = 0.4  # s; of the running median of a resting point's place
+HALF_CREEP = round(CREEP_WINDOW / (2.0 * STEP))  # instants
+STILL, STANDS = 0.1, 0.06  # m/s, and s for which it is so slow: a foot that stands
 REACH = 100  # instants on each side of a rest in which a point mostly leaves its place
 SINK_WINDOW = 0.2  # s; of the running low of its height, when it lands
 MIN_PIECE = 0.03  # s, of a contact that a cut leaves; a foot takes as long to land or leave
@@ -97,7 +99,7 @@ def _touches(
         for first, last in runs(at_rest)
         for candidate in _candidates_around(clock, thresholds, movement, first, last)
     ]
-    for candidate in _joined(_without_pauses(candidates, thresholds, movement), movement.track):
+    for candidate in _joined(_without_pauses(candidates, thresholds, movement), movement):
         cut_off = candidate.start <= clock[0] or candidate.end >= clock[-1]
         rest = (candidate.last - candidate.first) * STEP
         lasts = candidate.end - candidate.start > thresholds.min_duration
@@ -249,14 +251,15 @@ def _without_pauses(
     return before + ordered[-1:]
 
 
-def _joined(candidates: Iterable[_Candidate], track: FloatArray) -> list[_Candidate]:
+def _joined(candidates: Iterable[_Candidate], movement: PointMovement) -> list[_Candidate]:
     """Candidates in order, merged where they nearly meet in time at the same place."""
     joined: list[_Candidate] = []
     for candidate in sorted(candidates, key=lambda s: s.start):
         before = joined[-1] if joined else None
         if before is None or candidate.start > before.end + MIN_SEPARATION:
             joined.append(candidate)
-        elif np.linalg.norm((track[candidate.first] - track[before.last])[:2]) < MAX_SLIDE:
+            continue
+        if _apart(before, candidate, movement) < MAX_SLIDE:
             joined[-1] = replace(
                 before,
                 end=max(before.end, candidate.end),
@@ -268,6 +271,27 @@ def _joined(candidates: Iterable[_Candidate], track: FloatArray) -> list[_Candid
             joined[-1] = replace(before, end=min(before.end, turn))
             joined.append(replace(candidate, start=max(candidate.start, turn)))
     return joined
+
+
+def _apart(before: _Candidate, after: _Candidate, movement: PointMovement) -> float:
+    """M, level, from where a point stands as a rest comes to an end to where it does as the next
+    begins, so that a small step is seen; or, of one that creeps and turns under load, and so stands
+    not on both sides, between these instants themselves."""
+    first = max(before.first, before.last - HALF_CREEP)
+    last = min(after.last, after.first + HALF_CREEP)
+    start = _standing_place(movement, slice(first, before.last + 1))
+    end = _standing_place(movement, slice(after.first, last + 1))
+    if start is None or end is None:
+        start, end = movement.track[[before.last, after.first], :2]
+    return float(np.linalg.norm(end - start))
+
+
+def _standing_place(movement: PointMovement, during: slice) -> FloatArray | None:
+    """(2,) m, where a point mostly is while it is still; None where that is not for long enough."""
+    still = np.linalg.norm(movement.velocity[during, :2], axis=1) < STILL
+    if np.sum(still) * STEP < STANDS:
+        return None
+    return np.asarray(np.median(movement.track[during][still, :2], axis=0))
 
 
 def _within(contacts: Iterable[Contact], duration: float) -> list[Contact]:

@@ -192,6 +192,15 @@ def test_a_point_that_slides_away_stands_in_a_new_place() -> None:
     assert [c.place[0] for c in s.contacts] == pytest.approx([0.0, 0.5], abs=0.01)
 
 
+def test_a_small_step_makes_a_new_contact_however_smoothly_it_is_taken() -> None:
+    """As of a foot that is set anew after a landing, low-passed: slow, low, at rest on both sides.
+    Of one held in one place between them the foot was recorded up to 8 cm away."""
+    share = np.clip((TIMES - 1.0) / 0.2, 0.0, 1.0)
+    x = 0.08 * share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+    s = detect_contacts(TIMES, {"Left toe": point(0.013 * np.sin(np.pi * share), x=x)})
+    assert [c.place[0] for c in s.contacts] == pytest.approx([0.0, 0.08], abs=0.01)
+
+
 def test_a_hand_must_rest_on_the_floor() -> None:
     for height, still_s, touches in ((0.0, 0.6, True), (0.0, 0.1, False), (0.12, 0.6, False)):
         away = np.clip(np.abs(TIMES - 1.5) - still_s / 2, 0.0, None)
