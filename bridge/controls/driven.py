@@ -54,6 +54,12 @@ def driven_of(armature: bpy.types.Object, bones: Iterable[str]) -> list[str]:
     return [name for name in bones if name in moved and (name in chained or name not in keyed)]
 
 
+def moved_beside_keys(armature: bpy.types.Object) -> set[str]:
+    """Bones that drivers or constraints may move."""
+    driven = (fcurves.bone_of(path) for path in _driven_paths(armature))
+    return {*constrained(armature), *(name for name in driven if name is not None)}
+
+
 def constrained(armature: bpy.types.Object) -> set[str]:
     """Bones with constraints that may act, and those of inverse kinematics' chains."""
     found: set[str] = set()
@@ -115,9 +121,13 @@ def stretching(armature: bpy.types.Object) -> set[str]:
 
 def _animated(armature: bpy.types.Object) -> set[str]:
     """Paths of what curves or drivers change."""
+    keyed = (curve.data_path for curve in fcurves.curves_of(armature))
+    return {*_driven_paths(armature), *keyed}
+
+
+def _driven_paths(armature: bpy.types.Object) -> list[str]:
     data = armature.animation_data
-    drivers = [] if data is None else list(data.drivers)
-    return {curve.data_path for curve in (*drivers, *fcurves.curves_of(armature))}
+    return [] if data is None else [driver.data_path for driver in data.drivers]
 
 
 def candidates(armature: bpy.types.Object, bodies: Iterable[str]) -> list[str]:

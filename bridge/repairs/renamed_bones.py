@@ -3,7 +3,8 @@ recording's keys move a bone that is not there any more, and the bone itself sta
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 import bpy
 
@@ -14,10 +15,30 @@ from ..accessors import armature_data, present
 from ..armature import fcurves
 from ..armature.actions import recorded_action, showing_recorded
 from ..armature.read import named_bones
-from ..controls.driven import constrained
+from ..controls.driven import moved_beside_keys
 from ..properties.settings import settings_of
 from ..takes.difference import difference_shown
 from ..takes.takes import takes_of
+
+
+@dataclass(frozen=True)
+class KeyedBones:
+    """Which bones a recording moves. dead: those that its keys move and the armature lacks.
+    unkeyed: the armature's that neither keys nor drivers nor constraints move. parts: the bone of
+    each part, by its label."""
+
+    dead: tuple[str, ...]
+    unkeyed: tuple[str, ...]
+    parts: Mapping[str, str]
+
+    @staticmethod
+    def of(armature: bpy.types.Object) -> KeyedBones:
+        """What they are now."""
+        with showing_recorded(armature)():
+            moved = {*_keyed(armature), *moved_beside_keys(armature)}
+        names = [bone.name for bone in armature_data(armature).bones]
+        unkeyed = tuple(name for name in names if name not in moved)
+        return KeyedBones(dead_bones(armature), unkeyed, _parts(armature))
 
 
 def require_keyed(armature: bpy.types.Object) -> DeadKeys | None:
@@ -26,18 +47,16 @@ def require_keyed(armature: bpy.types.Object) -> DeadKeys | None:
     Returns what is to be said where it has keys of other bones that the armature lacks. To be asked
     before parts are found anew, which forgets what they were called. Raises RenamedBones.
     """
-    dead = dead_bones(armature)
-    if not dead:
+    if not dead_bones(armature):
         return None
-    action = present(recorded_action(armature)).name
-    moved, parts = _moved(armature), _parts(armature)
-    renamed = renamed_bones(armature)
-    needed = {parts[label] for label in parts if LABELS[label] in REQUIRED_KEYS}
-    still = [bone for bone in needed if not _carried(armature, bone, moved, set(parts.values()))]
+    action, keyed = present(recorded_action(armature)).name, KeyedBones.of(armature)
+    renamed = _names_now(armature, keyed)
+    needed = {bone for label, bone in keyed.parts.items() if LABELS[label] in REQUIRED_KEYS}
+    still = [bone for bone in needed if not _carried(armature, bone, keyed)]
     unkeyed = tuple(sorted({*renamed.values(), *still}))
     if unkeyed:
-        raise RenamedBones(action, dead, unkeyed, paired=bool(renamed))
-    return DeadKeys(action, dead)
+        raise RenamedBones(action, keyed.dead, unkeyed, paired=bool(renamed))
+    return DeadKeys(action, keyed.dead)
 
 
 def dead_bones(armature: bpy.types.Object) -> tuple[str, ...]:
@@ -47,11 +66,14 @@ def dead_bones(armature: bpy.types.Object) -> tuple[str, ...]:
 
 
 def renamed_bones(armature: bpy.types.Object) -> dict[str, str]:
-    """Of bones that a recording's keys move what they are called now: of a part of the body its
-    bone, of others the one that has the old name in its own, or is in it; else the only one that
-    may be."""
-    dead, moved, parts = dead_bones(armature), _moved(armature), _parts(armature)
-    unkeyed = [bone.name for bone in armature_data(armature).bones if bone.name not in moved]
+    """Of bones that a recording's keys move what they are called now, as far as that is told."""
+    return _names_now(armature, KeyedBones.of(armature))
+
+
+def _names_now(armature: bpy.types.Object, keyed: KeyedBones) -> dict[str, str]:
+    """Of a part of the body its bone, of others the one that has the old name in its own, or is in
+    it; else the only one that may be."""
+    dead, parts, unkeyed = keyed.dead, keyed.parts, keyed.unkeyed
     found = {
         part.bone: parts[part.name]
         for part in settings_of(armature).parts
@@ -88,28 +110,19 @@ def _rename(curves: fcurves.CurveHolder, names: Mapping[str, str]) -> None:
 
 
 def _keyed(armature: bpy.types.Object) -> dict[str, None]:
-    """The bones that a recording has keys for, in their order."""
+    """The bones that a recording's keys move, in their order; those of muted curves move none."""
     action = recorded_action(armature)
     slot = fcurves.slot_identifier(armature)
     curves = fcurves.holder_in(action, slot) if action is not None else None
-    keyed = [curve for curve in curves.fcurves if len(curve.keyframe_points)] if curves else []
-    bones = (fcurves.bone_of(curve.data_path) for curve in keyed)
+    moving = (c for c in curves.fcurves if len(c.keyframe_points) and not c.mute) if curves else ()
+    bones = (fcurves.bone_of(curve.data_path) for curve in moving)
     return dict.fromkeys(name for name in bones if name is not None)
 
 
-def _moved(armature: bpy.types.Object) -> set[str]:
-    """The bones that keys, drivers or constraints move."""
-    data = armature.animation_data
-    paths = [] if data is None else [each.data_path for each in data.drivers]
-    driven = {name for path in paths if (name := fcurves.bone_of(path)) is not None}
-    with showing_recorded(armature)():
-        return {*_keyed(armature), *driven, *constrained(armature)}
-
-
-def _carried(armature: bpy.types.Object, name: str, moved: Set[str], bodies: Iterable[str]) -> bool:
+def _carried(armature: bpy.types.Object, name: str, keyed: KeyedBones) -> bool:
     """Whether a bone moves by itself, or with a control above it that is none of the body's."""
-    bone = armature_data(armature).bones[name]
-    while bone.name not in moved:
+    bone, bodies = armature_data(armature).bones[name], keyed.parts.values()
+    while bone.name in keyed.unkeyed:
         if bone.parent is None or bone.parent.name in bodies:
             return False
         bone = bone.parent
@@ -121,5 +134,6 @@ def _parts(armature: bpy.types.Object) -> dict[str, str]:
     now."""
     bones = armature_data(armature).bones
     guessed = guess_labels(named_bones(armature))
-    chosen = {p.name: p.bone for p in settings_of(armature).parts if p.bone in bones}
+    rows = settings_of(armature).parts  # in which a script may have left a part that there is not
+    chosen = {row.name: row.bone for row in rows if row.name in LABELS and row.bone in bones}
     return {label: each[0] for label, each in guessed.items() if each is not None} | chosen

@@ -99,6 +99,14 @@ def rename_beside(armature: bpy.types.Object, names: dict[str, str]) -> None:
     data.action = recording
 
 
+def keyed_bone(armature: bpy.types.Object, name: str) -> bpy.types.FCurve:
+    """A key of a bone, whether or not there is one of that name."""
+    path = f'pose.bones["{name}"].location'
+    curve = fcurves.holder(armature).fcurves.new(path, index=0)
+    curve.keyframe_points.insert(1.0, 0.0)
+    return curve
+
+
 def contacts_of(armature: bpy.types.Object) -> list[tuple[str, float, float]]:
     return [(row.name, row.start_frame, row.end_frame) for row in armature.hangtime.contacts]
 
@@ -136,8 +144,12 @@ def test_the_one_bone_without_keys_is_the_one_that_was_renamed(analysed: bpy.typ
 
 def test_keys_of_no_bone_are_told_where_the_body_lacks_none(analysed: bpy.types.Object) -> None:
     assert require_keyed(analysed) is None
-    curves = fcurves.holder(analysed)
-    curves.fcurves.new('pose.bones["Tail"].location', index=0).keyframe_points.insert(1.0, 0.0)
+    curve = keyed_bone(analysed, "Tail")
+    curve.mute = True
+    assert require_keyed(analysed) is None
+    curve.mute = False
+    unknown = analysed.hangtime.parts.add()
+    unknown.name, unknown.bone = "left thumb", "LThumb"  # a script's, or another version's
     assert "has keys for Tail, which the armature does not have" in said(require_keyed(analysed))
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
 
