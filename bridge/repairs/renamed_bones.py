@@ -10,6 +10,7 @@ import bpy
 
 from ...solver.data.faults import DeadKeys, RenamedBones
 from ...solver.skeleton.mapping import guess_labels
+from ...solver.skeleton.names import names_part
 from ...solver.skeleton.parts import LABELS, REQUIRED_KEYS
 from ..accessors import armature_data, present
 from ..armature import fcurves
@@ -19,6 +20,8 @@ from ..controls.driven import moved_beside_keys
 from ..properties.settings import settings_of
 from ..takes.difference import difference_shown
 from ..takes.takes import takes_of
+
+_FEWEST_LETTERS = 3  # of a name that another one ends in, by which both may be one bone's
 
 
 @dataclass(frozen=True)
@@ -71,20 +74,30 @@ def renamed_bones(armature: bpy.types.Object) -> dict[str, str]:
 
 
 def _names_now(armature: bpy.types.Object, keyed: KeyedBones) -> dict[str, str]:
-    """Of a part of the body its bone, of others the one that has the old name in its own, or is in
-    it; else the only one that may be."""
-    dead, parts, unkeyed = keyed.dead, keyed.parts, keyed.unkeyed
-    found = {
-        part.bone: parts[part.name]
-        for part in settings_of(armature).parts
-        if part.bone in dead and parts.get(part.name) in unkeyed
-    }
-    for name in dead:
-        like = [b for b in unkeyed if b.endswith(name) or name.endswith(b)]
-        if name not in found and len(like) == 1 and like[0] not in found.values():
-            found[name] = like[0]
-    bodies = [bone for bone in parts.values() if bone in unkeyed]
-    return found or (dict(zip(dead, bodies, strict=True)) if len(dead) == len(bodies) == 1 else {})
+    """Of a part of the body its bone, as it was known or as the old name tells; of others the only
+    one whose name is alike."""
+    known = {row.bone: row.name for row in settings_of(armature).parts}
+    labels = {bone: label for label, bone in keyed.parts.items()}
+    found: dict[str, str] = {}
+    for alike in (
+        lambda old, new: new in labels and known.get(old) == labels[new],
+        lambda old, new: new in labels and names_part(old, LABELS[labels[new]]),
+        _same_but_for_prefix,
+    ):
+        for old in keyed.dead:
+            taken = set(found.values())
+            like = [bone for bone in keyed.unkeyed if bone not in taken and alike(old, bone)]
+            if old not in found and len(like) == 1:
+                found[old] = like[0]
+    return found
+
+
+def _same_but_for_prefix(one: str, other: str) -> bool:
+    """Such as rig_Tail and Tail, but neither Detail and Tail nor Head.L and L."""
+    tail, whole = sorted((one, other), key=len)
+    prefix = whole.removesuffix(tail)
+    letters = sum(map(str.isalpha, tail))
+    return letters >= _FEWEST_LETTERS and prefix != whole and not prefix[-1:].isalnum()
 
 
 def rename_keys(armature: bpy.types.Object, names: Mapping[str, str]) -> None:

@@ -9,7 +9,7 @@ import re
 from collections.abc import Mapping
 from functools import lru_cache
 
-from .parts import SIDED_PARTS, SIDES, Found, Part, Side
+from .parts import SIDED_PARTS, SIDES, Found, Key, Part, Side
 from .tree import Tree
 
 # In order of preference: an exact "hand" is the hand even where a "wrist" stands before it.
@@ -69,6 +69,13 @@ def names_head(name: str) -> bool:
     are hats and hair of the head, too."""
     words = _words(name)
     return len(words) == 1 and words[0] in HEAD_WORDS
+
+
+def names_part(name: str, key: Key) -> bool:
+    """Whether an English word calls a bone a part of the body, by itself: a shoulder may be two."""
+    part, side = key
+    named, word = split_side(name)
+    return named is side and word in PART_NAMES.get(part, ())
 
 
 def _words(name: str) -> list[str]:

@@ -26,11 +26,12 @@ RIGS: dict[type[Fault], str | tuple[str, ...]] = {
     faults.RenamedBones: (
         "“{action}” has no keys for {unkeyed:few}, but for {bones:few}, which the armature does "
         "not have: bones were renamed while another action was shown; give them the names that the "
-        "keys have, or delete these keys if they are another armature's (Dope Sheet, Only Show "
-        "Errors).",
+        "keys have, or delete these keys if they are a deleted bone's or another armature's (Dope "
+        "Sheet, Only Show Errors).",
         "“{action}” has no keys for {unkeyed:few}, but for {bones:few}, which the armature does "
         "not have: bones were renamed while another action was shown; press Rename Keys, and "
-        "Analyze again.",
+        "Analyze again, or delete these keys if they are a deleted bone's or another armature's "
+        "(Dope Sheet, Only Show Errors).",
     ),
     faults.DeadKeys: "“{action}” has keys for {bones:few}, which the armature does not have; if "
     "one was renamed while another action was shown, give it that name again.",

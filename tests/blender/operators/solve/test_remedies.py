@@ -8,7 +8,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.properties.stances import active_stance
-from hangtime.bridge.repairs.renamed_bones import dead_bones, require_keyed
+from hangtime.bridge.repairs.renamed_bones import dead_bones, renamed_bones, require_keyed
 from hangtime.bridge.rows.phases import roles
 from hangtime.operators.solve.common import chosen_armature, said
 from hangtime.operators.words.failure_text import failure_of
@@ -127,7 +127,9 @@ def test_keys_of_renamed_bones_are_missed_and_renamed(analysed: bpy.types.Object
 
 
 def test_bones_that_may_be_any_of_several_are_to_be_named_back(analysed: bpy.types.Object) -> None:
-    rename_beside(analysed, {"LeftFoot": "ankle.L", "RightFoot": "ankle.R"})
+    for side in ("Left", "Right"):
+        analysed.data.bones[f"{side}Foot"].name = f"{side} paddle"
+    rename_beside(analysed, {"Left paddle": "ankle.L", "Right paddle": "ankle.R"})
     analysed.hangtime.parts.clear()
     with pytest.raises(RuntimeError, match=r"no keys for ankle\.L, ankle\.R, .*the names that the"):
         bpy.ops.hangtime.analyze()
@@ -135,11 +137,40 @@ def test_bones_that_may_be_any_of_several_are_to_be_named_back(analysed: bpy.typ
         bpy.ops.hangtime.rename_keys()
 
 
-def test_the_one_bone_without_keys_is_the_one_that_was_renamed(analysed: bpy.types.Object) -> None:
-    rename_beside(analysed, {"LeftFoot": "ankle.L"})
+def test_old_names_tell_which_parts_were_renamed(analysed: bpy.types.Object) -> None:
+    rename_beside(analysed, {"LeftFoot": "ankle.L", "RightFoot": "ankle.R"})
     analysed.hangtime.parts.clear()
+    assert renamed_bones(analysed) == {"LeftFoot": "ankle.L", "RightFoot": "ankle.R"}
     assert bpy.ops.hangtime.rename_keys() == {"FINISHED"}
     assert not dead_bones(analysed)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "alike"),
+    [
+        ("Tail", "rig_Tail", True),
+        ("mixamorig:Tail", "Tail", True),
+        ("Detail", "Tail", False),
+        ("Sword", "d", False),
+        ("Prop.L", "L", False),
+    ],
+)
+def test_bones_with_another_prefix_are_the_same(
+    analysed: bpy.types.Object, old: str, new: str, alike: bool
+) -> None:
+    analysed.data.bones["LThumb"].name = old
+    rename_beside(analysed, {old: new})
+    assert renamed_bones(analysed) == ({old: new} if alike else {})
+
+
+def test_keys_of_a_deleted_bone_are_not_given_to_a_part_that_has_none(
+    analysed: bpy.types.Object,
+) -> None:
+    curves = fcurves.holder(analysed).fcurves
+    for curve in [c for c in curves if fcurves.bone_of(c.data_path) == "Head"]:
+        curves.remove(curve)
+    keyed_bone(analysed, "Tail")
+    assert renamed_bones(analysed) == {}
 
 
 def test_keys_of_no_bone_are_told_where_the_body_lacks_none(analysed: bpy.types.Object) -> None:
