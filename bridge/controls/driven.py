@@ -109,6 +109,30 @@ def chain_of(bone: bpy.types.PoseBone, constraint: bpy.types.Constraint) -> list
     return [each.name for each in chain[:count]]
 
 
+def followed_by(armature: bpy.types.Object, bones: Iterable[str]) -> set[str]:
+    """These bones, what they hang on and what their constraints follow in the armature, and so on:
+    what may move them."""
+    posed, found, waiting = pose_of(armature).bones, set[str](), list(bones)
+    while waiting:
+        bone = posed.get(waiting.pop())
+        if bone is None or bone.name in found:
+            continue
+        found.add(bone.name)
+        waiting += [bone.parent.name] if bone.parent is not None else []
+        leaders = (leader for each in bone.constraints for leader in leaders_of(each))
+        waiting += [name for thing, name in leaders if thing == armature]
+    return found
+
+
+def leaders_of(constraint: bpy.types.Constraint) -> Iterator[tuple[bpy.types.Object | None, str]]:
+    """Objects that a constraint follows, with the bone where it is one's."""
+    if isinstance(constraint, bpy.types.ArmatureConstraint):
+        yield from ((each.target, each.subtarget) for each in constraint.targets)
+        return
+    for thing, bone in (("target", "subtarget"), ("pole_target", "pole_subtarget")):
+        yield getattr(constraint, thing, None), getattr(constraint, bone, "")
+
+
 def stretching(armature: bpy.types.Object) -> set[str]:
     """Bones of inverse kinematics that may become longer and shorter as it acts."""
     bones, found = pose_of(armature).bones, set[str]()

@@ -13,7 +13,7 @@ from ...solver.data.faults import NoControls, PulledFromOutside
 from ..armature.incremental import Incremental
 from ..armature.poses import sample
 from .control_rig import found_controls
-from .driven import chain_of, constraints_of, driven_of
+from .driven import chain_of, constraints_of, driven_of, leaders_of
 from .followed import acting
 from .needed import LEVER
 from .targets import parents_of
@@ -97,10 +97,7 @@ def _led_by(thing: bpy.types.Object) -> Iterator[tuple[bpy.types.Object | None, 
     """Objects that one hangs on or follows, with the bone where it is one's."""
     yield thing.parent, thing.parent_bone if thing.parent_type == "BONE" else ""
     for constraint in thing.constraints:
-        if isinstance(constraint, bpy.types.ArmatureConstraint):
-            yield from ((each.target, each.subtarget) for each in constraint.targets)
-        else:
-            yield getattr(constraint, "target", None), getattr(constraint, "subtarget", "")
+        yield from leaders_of(constraint)
 
 
 def unled(done: FloatArray, bodies: tuple[str, ...], parents: list[int]) -> list[str]:

@@ -3,6 +3,7 @@ recording's keys move a bone that is not there any more, and the bone itself sta
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -16,12 +17,13 @@ from ..accessors import armature_data, present
 from ..armature import fcurves
 from ..armature.actions import recorded_action, showing_recorded
 from ..armature.read import named_bones
-from ..controls.driven import moved_beside_keys
+from ..controls.driven import followed_by, moved_beside_keys
 from ..properties.settings import settings_of
 from ..takes.difference import difference_shown
 from ..takes.takes import takes_of
 
 _FEWEST_LETTERS = 3  # of a name that another one ends in, by which both may be one bone's
+_SAME_JOINT = 0.05  # of a bone's length, from its joint to its control's
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ class KeyedBones:
 
 
 def require_keyed(armature: bpy.types.Object) -> DeadKeys | None:
-    """Refuse a recording whose keys lack a bone of the body that was renamed.
+    """Refuse a recording whose keys lack a bone that was renamed, of the body or followed by it.
 
     Returns what is to be said where it has keys of other bones that the armature lacks. To be asked
     before parts are found anew, which forgets what they were called. Raises RenamedBones.
@@ -55,10 +57,11 @@ def require_keyed(armature: bpy.types.Object) -> DeadKeys | None:
     action, keyed = present(recorded_action(armature)).name, KeyedBones.of(armature)
     renamed = _names_now(armature, keyed)
     needed = {bone for label, bone in keyed.parts.items() if LABELS[label] in REQUIRED_KEYS}
-    still = [bone for bone in needed if not _carried(armature, bone, keyed)]
-    unkeyed = tuple(sorted({*renamed.values(), *still}))
-    if unkeyed:
-        raise RenamedBones(action, keyed.dead, unkeyed, paired=bool(renamed))
+    missed = {bone for bone in needed if not _carried(armature, bone, keyed)}
+    missed |= followed_by(armature, keyed.parts.values()).intersection(renamed.values())
+    if missed:
+        paired = not missed.isdisjoint(renamed.values())
+        raise RenamedBones(action, keyed.dead, tuple(sorted(missed)), paired)
     return DeadKeys(action, keyed.dead)
 
 
@@ -133,13 +136,14 @@ def _keyed(armature: bpy.types.Object) -> dict[str, None]:
 
 
 def _carried(armature: bpy.types.Object, name: str, keyed: KeyedBones) -> bool:
-    """Whether a bone moves by itself, or with a control above it that is none of the body's."""
+    """Whether a bone moves by itself, or with a control above it. Between two parts a control has
+    its bone's joint; others, such as those of a neck, are bones of the body."""
     bone, bodies = armature_data(armature).bones[name], keyed.parts.values()
-    while bone.name in keyed.unkeyed:
-        if bone.parent is None or bone.parent.name in bodies:
-            return False
-        bone = bone.parent
-    return True
+    above = bone.parent_recursive
+    part = next((i for i, each in enumerate(above) if each.name in bodies), None)
+    within = math.inf if part is None else _SAME_JOINT * bone.length
+    moving = (each for each in (bone, *above[:part]) if each.name not in keyed.unkeyed)
+    return any((each.head_local - bone.head_local).length <= within for each in moving)
 
 
 def _parts(armature: bpy.types.Object) -> dict[str, str]:

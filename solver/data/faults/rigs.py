@@ -47,8 +47,9 @@ class HeldBones(Fault):
 
 @dataclass
 class RenamedBones(Fault):
-    """A recording's keys move bones that the armature does not have, and none move these of the
-    body: they were renamed while another action was shown. paired: whether it is known which."""
+    """A recording's keys move bones that the armature does not have, and none move these, of the
+    body or followed by it: they were renamed while another action was shown. paired: whether it is
+    known which."""
 
     action: str
     bones: tuple[str, ...]

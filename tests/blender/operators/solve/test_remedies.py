@@ -12,7 +12,7 @@ from hangtime.bridge.repairs.renamed_bones import dead_bones, renamed_bones, req
 from hangtime.bridge.rows.phases import roles
 from hangtime.operators.solve.common import chosen_armature, said
 from hangtime.operators.words.failure_text import failure_of
-from hangtime.solver.data.faults import NoSolution, UnseenSupport
+from hangtime.solver.data.faults import DeadKeys, NoSolution, RenamedBones, UnseenSupport
 from hangtime.solver.data.row_kinds import RowKind, Violation
 from hangtime.solver.data.status import Status
 from hangtime.tests.blender.helpers import rigs
@@ -171,6 +171,16 @@ def test_keys_of_a_deleted_bone_are_not_given_to_a_part_that_has_none(
         curves.remove(curve)
     keyed_bone(analysed, "Tail")
     assert renamed_bones(analysed) == {}
+    with pytest.raises(RuntimeError, match=r"no keys for Head, .*if they are a deleted bone's"):
+        bpy.ops.hangtime.analyze()
+    bpy.ops.object.mode_set(mode="EDIT")
+    bones = analysed.data.edit_bones
+    control, head = bones.new("turn"), bones["Head"]
+    control.head, control.tail, control.parent = head.head, head.tail, head.parent
+    head.use_connect, head.parent = False, control
+    bpy.ops.object.mode_set(mode="OBJECT")
+    keyed_bone(analysed, "turn")  # a control about the head's joint, as a neck is not
+    assert isinstance(require_keyed(analysed), DeadKeys)
 
 
 def test_keys_of_no_bone_are_told_where_the_body_lacks_none(analysed: bpy.types.Object) -> None:
@@ -183,6 +193,25 @@ def test_keys_of_no_bone_are_told_where_the_body_lacks_none(analysed: bpy.types.
     unknown.name, unknown.bone = "left thumb", "LThumb"  # a script's, or another version's
     assert "has keys for Tail, which the armature does not have" in said(require_keyed(analysed))
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+
+
+def test_renamed_bones_that_the_body_does_not_follow_are_told(analysed: bpy.types.Object) -> None:
+    prop = {"LThumb": "rig_LThumb"}
+    rename_beside(analysed, prop)
+    assert renamed_bones(analysed) == prop
+    assert "has keys for LThumb, which the armature does not have" in said(require_keyed(analysed))
+    followed = analysed.pose.bones["RightArm"].constraints.new("COPY_ROTATION")
+    followed.target, followed.subtarget = analysed, "rig_LThumb"
+    with pytest.raises(RenamedBones):
+        require_keyed(analysed)
+
+
+def test_a_renamed_head_does_not_move_with_its_neck(analysed: bpy.types.Object) -> None:
+    analysed.hangtime.parts.clear()
+    rename_beside(analysed, {"Head": "skull", "LThumb": "digit"})
+    with pytest.raises(RenamedBones) as fault:
+        require_keyed(analysed)
+    assert fault.value.unkeyed == ("skull",)
 
 
 def test_the_sidebar_is_about_the_active_armature_unless_pinned() -> None:
