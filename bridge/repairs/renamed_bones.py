@@ -1,10 +1,11 @@
-"""Bones that were renamed while another action was shown: Blender renames no other's curves, so a
-recording's keys move a bone that is not there any more, and the bone itself stays at rest."""
+"""Bones that were renamed while another action was shown, or in another armature that shares it:
+Blender renames the curves of the armature's shown action alone, so a recording's keys move a bone
+that is not there any more, and the bone itself stays at rest."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import bpy
@@ -14,6 +15,7 @@ from ...solver.skeleton.mapping import guess_labels
 from ...solver.skeleton.names import names_part
 from ...solver.skeleton.parts import LABELS, REQUIRED_KEYS
 from ..accessors import armature_data, present
+from ..action_slots import home_of
 from ..armature import fcurves
 from ..armature.actions import recorded_action, showing_recorded
 from ..armature.read import named_bones
@@ -103,26 +105,59 @@ def _same_but_for_prefix(one: str, other: str) -> bool:
     return letters >= _FEWEST_LETTERS and prefix != whole and not prefix[-1:].isalnum()
 
 
-def rename_keys(armature: bpy.types.Object, names: Mapping[str, str]) -> None:
-    """Have the keys of an armature's takes move the bones as they are called now. A take whose keys
-    do so already stays."""
-    slot = fcurves.slot_identifier(armature)
-    for take in takes_of(armature):
-        for action in (take.action, difference_shown(take.action)):
-            curves = fcurves.holder_in(action, slot) if action is not None else None
-            if curves is not None:
-                _rename(curves, names)
+def takes_to_rename(
+    armature: bpy.types.Object, names: Mapping[str, str]
+) -> dict[bpy.types.Action, list[bpy.types.FCurve]]:
+    """The armature's takes, and what results have more than others, with the curves that move bones
+    by their old names. names: the new ones, by these."""
+    takes = (take.action for take in takes_of(armature))
+    found = {}
+    for action in (each for take in takes for each in (take, difference_shown(take))):
+        if action is not None:
+            found[action] = _outdated(action, fcurves.slot_identifier(armature), names)
+    return {action: curves for action, curves in found.items() if curves}
 
 
-def _rename(curves: fcurves.CurveHolder, names: Mapping[str, str]) -> None:
-    keyed = {fcurves.bone_of(curve.data_path) for curve in curves.fcurves}
-    for curve in curves.fcurves:
-        name = fcurves.bone_of(curve.data_path)
-        if name is not None and name in names and names[name] not in keyed:
-            old, new = (bpy.utils.escape_identifier(each) for each in (name, names[name]))
-            curve.data_path = curve.data_path.replace(f'["{old}"]', f'["{new}"]', 1)
-            if curve.group is not None and curve.group.name == name:
-                curve.group.name = names[name]
+def rename_keys(curves: Iterable[bpy.types.FCurve], names: Mapping[str, str]) -> None:
+    """Have curves move the bones as they are called now."""
+    for curve in curves:
+        name = present(fcurves.bone_of(curve.data_path))
+        old, new = (bpy.utils.escape_identifier(each) for each in (name, names[name]))
+        curve.data_path = curve.data_path.replace(f'["{old}"]', f'["{new}"]', 1)
+        if curve.group is not None and curve.group.name == name:
+            curve.group.name = names[name]
+
+
+def moved_by_old_names(
+    armature: bpy.types.Object, takes: Iterable[bpy.types.Action], names: Iterable[str]
+) -> bpy.types.Object | None:
+    """Another armature that has bones of these names, and that one of an armature's takes moves."""
+    slot, old = fcurves.slot_identifier(armature), set(names)
+    shared = {home[0] if (home := home_of(take)) is not None else take for take in takes}
+    for other in bpy.data.objects:
+        if other == armature or other.type != "ARMATURE" or not other.users_scene:
+            continue
+        plays = fcurves.slot_identifier(other) == slot and not shared.isdisjoint(_played(other))
+        if plays and not old.isdisjoint(armature_data(other).bones.keys()):
+            return other
+    return None
+
+
+def _played(armature: bpy.types.Object) -> set[bpy.types.Action | None]:
+    data = armature.animation_data
+    if data is None:
+        return set()
+    return {data.action, *(strip.action for track in data.nla_tracks for strip in track.strips)}
+
+
+def _outdated(
+    action: bpy.types.Action, slot: str | None, names: Mapping[str, str]
+) -> list[bpy.types.FCurve]:
+    """The curves that move bones by their old names; but of those that are keyed by the new one."""
+    curves = fcurves.holder_in(action, slot)
+    bones = [(c, fcurves.bone_of(c.data_path)) for c in curves.fcurves] if curves else []
+    keyed = {bone for _, bone in bones}
+    return [c for c, bone in bones if bone and bone in names and names[bone] not in keyed]
 
 
 def _keyed(armature: bpy.types.Object) -> dict[str, None]:

@@ -7,7 +7,12 @@ from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.poses import set_frame_rate
 from ...bridge.files.object_scale import scale_object
 from ...bridge.properties.settings import settings_of
-from ...bridge.repairs.renamed_bones import rename_keys, renamed_bones
+from ...bridge.repairs.renamed_bones import (
+    moved_by_old_names,
+    rename_keys,
+    renamed_bones,
+    takes_to_rename,
+)
 from ...solver.data.faults import Fault
 from ..names import OperatorId
 from ..operator_types import OperatorResult
@@ -16,6 +21,10 @@ from ..solve.live import redraw
 from ..solve.session import session
 
 LINKED = "“{}” is linked: rename its keys in its own file, or give the bones their old names"
+SHARED = (
+    "“{}” shares the action, and has bones of the old names: give it its own action (Object > "
+    "Relations > Make Single User > Object Animation), or give the bones the same names in both"
+)
 NOT_RENAMED = (
     "It is not known which bones were renamed: give them the names that the recording's keys have"
 )
@@ -99,17 +108,22 @@ class RenameKeysOperator(MendingOperator, bpy.types.Operator):
     bl_idname = OperatorId.RENAME_KEYS
     bl_label = "Rename Keys"
     bl_description = (
-        "Let the keys of bones that were renamed while another action was shown move these bones "
+        "Let the keys of bones that were renamed while their action was not shown move these bones "
         "again, in the recording and the results made from it. Analyze next"
     )
     bl_options = {"REGISTER", "UNDO"}
 
     def mend(self, armature: bpy.types.Object) -> OperatorResult:
-        names, recording = renamed_bones(armature), recorded_action(armature)
-        if recording is not None and recording.library is not None:
-            return self.refuse(LINKED.format(recording.name))
+        names = renamed_bones(armature)
         if not names:
             return self.refuse(NOT_RENAMED)
-        rename_keys(armature, names)
+        takes = takes_to_rename(armature, names)
+        for take in takes:
+            if take.library is not None:
+                return self.refuse(LINKED.format(take.name))
+        other = moved_by_old_names(armature, takes, names)
+        if other is not None:
+            return self.refuse(SHARED.format(other.name))
+        rename_keys((curve for curves in takes.values() for curve in curves), names)
         who = f"{len(names)} bones have" if len(names) > 1 else "1 bone has"
         return self.done(f"{who} keys again")

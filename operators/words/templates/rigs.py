@@ -25,14 +25,15 @@ RIGS: dict[type[Fault], str | tuple[str, ...]] = {
     "constraints.",
     faults.RenamedBones: (
         "“{action}” has no keys for {unkeyed:few}, but for {bones:few}, which the armature does "
-        "not have: bones were renamed while another action was shown; give them the names that the "
-        "keys have, or delete these keys if they are a deleted bone's or another armature's (Dope "
-        "Sheet, Only Show Errors).",
+        "not have: bones were renamed while the action was not shown, or in another armature that "
+        "shares it; give them the names that the keys have, or delete these keys if they are a "
+        "deleted bone's or another armature's (Dope Sheet, Only Show Errors).",
         "“{action}” has no keys for {unkeyed:few}, but for {bones:few}, which the armature does "
-        "not have: bones were renamed while another action was shown; press Rename Keys, and "
-        "Analyze again, or delete these keys if they are a deleted bone's or another armature's "
-        "(Dope Sheet, Only Show Errors).",
+        "not have: bones were renamed while the action was not shown, or in another armature that "
+        "shares it; press Rename Keys, and Analyze again, or delete these keys if they are a "
+        "deleted bone's or another armature's (Dope Sheet, Only Show Errors).",
     ),
     faults.DeadKeys: "“{action}” has keys for {bones:few}, which the armature does not have; if "
-    "one was renamed while another action was shown, give it that name again.",
+    "one was renamed while the action was not shown, or in another armature that shares it, give "
+    "it that name again.",
 }

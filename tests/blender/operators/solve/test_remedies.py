@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
@@ -212,6 +214,42 @@ def test_a_renamed_head_does_not_move_with_its_neck(analysed: bpy.types.Object) 
     with pytest.raises(RenamedBones) as fault:
         require_keyed(analysed)
     assert fault.value.unkeyed == ("skull",)
+
+
+def test_keys_of_two_armatures_that_share_an_action_are_not_renamed(
+    analysed: bpy.types.Object,
+) -> None:
+    """Those of a bone that one of them has and the other calls otherwise."""
+    other = analysed.copy()
+    other.data = analysed.data.copy()
+    other.animation_data.action = analysed.animation_data.action
+    bpy.context.scene.collection.objects.link(other)
+    analysed.data.bones["LeftFoot"].name = "ankle.L"  # which renames the curves of both
+    bpy.context.view_layer.objects.active = other
+    other.select_set(True)
+    with pytest.raises(RuntimeError, match=r"no keys for LeftFoot, .*armature that shares it"):
+        bpy.ops.hangtime.analyze()
+    with pytest.raises(RuntimeError, match=f"“{analysed.name}” shares the action"):
+        bpy.ops.hangtime.rename_keys()
+    analysed.select_set(False)
+    bpy.ops.object.make_single_user(type="SELECTED_OBJECTS", animation=True)
+    assert bpy.ops.hangtime.rename_keys() == {"FINISHED"}
+    assert not dead_bones(other)
+    assert not dead_bones(analysed)
+
+
+def test_keys_of_a_linked_action_are_not_renamed(
+    analysed: bpy.types.Object, tmp_path: Path
+) -> None:
+    path, data = str(tmp_path / "take.blend"), analysed.animation_data
+    bpy.data.libraries.write(path, {data.action})
+    with bpy.data.libraries.load(path, link=True) as (_, wanted):
+        wanted.actions = [data.action.name]
+    analysed.data.bones["LeftFoot"].name = "ankle.L"  # the linked action is not shown yet
+    fcurves.assign(analysed, wanted.actions[0], fcurves.slot_identifier(analysed))
+    with pytest.raises(RuntimeError, match="is linked: rename its keys in its own file"):
+        bpy.ops.hangtime.rename_keys()
+    assert dead_bones(analysed) == ("LeftFoot",)
 
 
 def test_the_sidebar_is_about_the_active_armature_unless_pinned() -> None:
