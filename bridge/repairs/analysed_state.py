@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import json
+from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 from zlib import crc32
 
 import bpy
+import numpy as np
+from mathutils import Matrix, Vector
 
 from ...solver.data.faults import ChangedMeanwhile
 from ..accessors import armature_data, pose_of
@@ -20,63 +24,48 @@ from ..scene.surfaces_digest import Conditions
 from ..takes.options import loop_options
 from ..takes.takes import take_digest
 
-_TOLD = {"error_location", "error_rotation"}  # by inverse kinematics, of the frame that is shown
+_TOLD = {  # by Blender: of the frame that is shown, and of the slots that an action has now
+    *("error_location", "error_rotation"),
+    *("action_suitable_slots", "last_slot_identifier"),
+}
+_DIGITS = 3  # Blender units, and of axes, which going in and out of edit mode turns by 1e-6
 
-BONES = "its bones"
-RATE = "the scene's frame rate"
-SIZE = "its scale or the scene's unit scale"
-PLACE = "its place"
-CONSTRAINTS = "its constraints"
-KEYS = "its keys"
-REPAIRS = "its repairs"
-LOOP = "Loop"
+BONES, KEYS = "its bones", "its keys"
 
 
 @dataclass(frozen=True)
 class AnalysedState:
-    """Of an armature and its recording. bones, constraints, keys: numbers, others where these are;
-    repairs: as they are stored; loop: whether it is to be one."""
+    """Of an armature and its recording. digests: of its other parts, by what these are called to
+    the artist; each another text where the part is another."""
 
     conditions: Conditions
-    bones: str
-    constraints: str
-    keys: str
-    repairs: str
-    loop: bool
+    digests: Mapping[str, str]
 
     @staticmethod
     def of(armature: bpy.types.Object) -> AnalysedState:
         """What it is now."""
         settings, action = settings_of(armature), recorded_action(armature)
-        bones = [(b.name, b.parent and b.parent.name) for b in armature_data(armature).bones]
-        return AnalysedState(
-            Conditions.of(armature),
-            str(crc32(repr(bones).encode())),
-            str(crc32(repr(_constraints(armature)).encode())),
-            take_digest(armature, action) if action is not None else "",
-            settings.repairs,
-            loop_options(settings) is not None,
-        )
+        digests = {
+            BONES: _digest(_bones(armature)),
+            "its constraints": _digest(_constraints(armature)),
+            KEYS: take_digest(armature, action) if action is not None else "",
+            "its repairs": settings.repairs,
+            "Loop": str(loop_options(settings) is not None),
+        }
+        return AnalysedState(Conditions.of(armature), digests)
 
     def as_text(self) -> str:
         """To be kept in a property, see `STATE`."""
         return json.dumps(asdict(self))
 
     def since(self, before: AnalysedState) -> tuple[str, ...]:
-        """In words, the parts that are others than before."""
+        """In words, the parts that are others than before; of those that were not kept, nothing."""
         now, then = self.conditions, before.conditions
-        renamed, resized = self.bones != before.bones, now.resized(then)
-        changes = {
-            BONES: renamed,
-            RATE: now.replayed(then),
-            SIZE: resized,
-            PLACE: not resized and now.moved(then),
-            CONSTRAINTS: self.constraints != before.constraints,
-            KEYS: not renamed and self.keys != before.keys,  # which name the bones
-            REPAIRS: self.repairs != before.repairs,
-            LOOP: self.loop != before.loop,
-        }
-        return tuple(told for told, differs in changes.items() if differs)
+        rate = ("the scene's frame rate",) if now.replayed(then) else ()
+        kept = before.digests
+        changed = [part for part, text in self.digests.items() if kept.get(part, text) != text]
+        told = (part for part in changed if part != KEYS or BONES not in changed)  # keys name bones
+        return (*rate, *_placed(now, then), *told)
 
 
 def changed_since_analysis(armature: bpy.types.Object) -> tuple[str, ...]:
@@ -90,12 +79,33 @@ def require_in_place(armature: bpy.types.Object) -> None:
     """Refuse an armature that was moved or scaled since the analysis, whose contacts stay where
     they were found; without reading its recording. Raises ChangedMeanwhile."""
     before = STATE.of(settings_of(armature).analysed_state)
-    if before is None:
-        return
-    now, then = Conditions.of(armature), before.conditions
-    changed = SIZE if now.resized(then) else PLACE if now.moved(then) else None
-    if changed is not None:
-        raise ChangedMeanwhile(armature.name, while_solving=False, changed=(changed,))
+    changed = () if before is None else _placed(Conditions.of(armature), before.conditions)
+    if changed:
+        raise ChangedMeanwhile(armature.name, while_solving=False, changed=changed)
+
+
+def _placed(now: Conditions, then: Conditions) -> tuple[str, ...]:
+    """In words, how an armature is placed otherwise than it was; another size moves it, too."""
+    if now.resized(then):
+        return ("its scale or the scene's unit scale",)
+    return ("its place",) if now.moved(then) else ()
+
+
+def _digest(part: object) -> str:
+    return str(crc32(repr(part).encode()))
+
+
+def _bones(armature: bpy.types.Object) -> list[object]:
+    """The bones, and where they are at rest."""
+    return [
+        (each.name, each.parent and each.parent.name, _rounded(each.matrix_local, each.tail_local))
+        for each in armature_data(armature).bones
+    ]
+
+
+def _rounded(matrix: Matrix, tail: Vector) -> list[float]:
+    values = np.append(np.array(matrix), np.array(tail))
+    return list((np.round(values, _DIGITS) + 0.0).tolist())  # no -0.0
 
 
 def _constraints(armature: bpy.types.Object) -> list[object]:
@@ -105,20 +115,21 @@ def _constraints(armature: bpy.types.Object) -> list[object]:
     curves = holder_in(action, slot_identifier(armature)) if action is not None else None
     changing = [] if data is None else [each.data_path for each in data.drivers]
     changing += [] if curves is None else [each.data_path for each in curves.fcurves]
-    found: list[object] = []
-    for owner in (armature, *pose_of(armature).bones):
-        for each in owner.constraints:
-            path = f"{each.path_from_id()}."
-            moving = {p.removeprefix(path) for p in changing if p.startswith(path)}
-            found.append((owner.name if owner != armature else "", stored(each, _TOLD | moving)))
-    return found
+    moving = defaultdict[str, set[str]](set)
+    for path in changing:
+        owner, _, name = path.rpartition(".")
+        moving[owner].add(name)
+    return [
+        (owner.name if owner != armature else "", stored(each, _TOLD | moving[each.path_from_id()]))
+        for owner in (armature, *pose_of(armature).bones)
+        for each in owner.constraints
+    ]
 
 
 def _read(content: Any) -> AnalysedState:
     told = entries(content)
-    words = {name: word(told[name]) for name in ("bones", "constraints", "keys", "repairs")}
-    conditions = Conditions.told(told["conditions"])
-    return AnalysedState(conditions=conditions, loop=told["loop"] is True, **words)
+    digests = {part: word(digest) for part, digest in entries(told.get("digests", {})).items()}
+    return AnalysedState(Conditions.told(told["conditions"]), digests)
 
 
 STATE: HiddenText[AnalysedState | None] = HiddenText("analysed_state", _read, None)
