@@ -152,7 +152,7 @@ class FollowedDrag(PolledOperator):
             keyed = pressed and self.press(event)
         moved = event.type == "MOUSEMOVE" and self._press.drags(context, event)
         if keyed or (moved and not self._typed):
-            if self._typed:
+            if self._typed or self._press.over_bar:  # over a bar the mouse leads nowhere
                 self.put_by(self._typed.value)
             else:
                 self.pull(context, event)

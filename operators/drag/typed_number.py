@@ -34,6 +34,6 @@ class TypedNumber:
 
     @property
     def value(self) -> float:
-        """What it is so far."""
+        """What it is so far; 0 of nothing."""
         size = float(f"0{self.digits}")
         return -size if self.negative else size

@@ -295,6 +295,21 @@ def test_what_is_typed_leads_until_it_is_deleted(analysed) -> None:
     assert led == ["mouse", 1.0, -1.0, 0.0, "mouse", "mouse"]
 
 
+def test_what_is_typed_and_deleted_over_the_sidebar_leaves_where_the_mouse_will_take_hold(
+    analysed,
+) -> None:
+    """A turn would count from the button, and jump as the mouse comes into the view."""
+    drag, led = Drag(analysed), list[object]()
+    drag.put_by, drag.pull = led.append, lambda *_: led.append("mouse")
+    drag._look = drag._show = lambda: None
+    drag._press = Press((0.0, 0.0), slack=3.0, dragging=True, over_bar=True)
+    drag.begin()
+    for kind, character in (("THREE", "3"), ("BACK_SPACE", "")):
+        event = SimpleNamespace(type=kind, value="PRESS", ascii=character)
+        drag.modal(SimpleNamespace(region_data=True), event)
+    assert led == [3.0, 0.0]
+
+
 @pytest.mark.parametrize("ends", ["modal", "cancel"])
 def test_a_drag_whose_armature_is_gone_leaves_no_ghost(analysed, ends: str) -> None:
     drag = Drag(analysed)
