@@ -44,7 +44,6 @@ class FollowedDrag(PolledOperator):
     adapt: bpy.props.BoolProperty(
         name="Adapt", description="Adapt the motion once the mouse lets go", default=True
     )
-    key_hints = ""  # what the status bar says of keys
     _void = False  # whether the recording is another than was analysed
 
     @classmethod
@@ -85,6 +84,11 @@ class FollowedDrag(PolledOperator):
     def chosen(self) -> bool:
         """It was clicked, not dragged; whether that has chosen anything."""
         return False
+
+    @property
+    def key_hints(self) -> str:
+        """What the status bar says of keys."""
+        raise NotImplementedError
 
     def text(self) -> str:
         """The displacement, for the header."""

@@ -7,7 +7,7 @@ from mathutils import Vector
 from ...bridge.accessors import current_scene, present
 from ...bridge.armature.poses import metres_per_unit
 from ...bridge.properties.constraint import HangtimeConstraint
-from ...bridge.properties.contact import HangtimeContact
+from ...bridge.properties.contact import HangtimeContact, HangtimeStance
 from ...bridge.properties.settings import settings_of
 from ...bridge.properties.stances import place, stance_contacts, stand_on, told_along
 from ...bridge.scene.members import ground_members
@@ -23,6 +23,10 @@ from .snapping import Snapping
 FLAT = 0.3  # of the view's direction along the vertical: below, the ground is seen edge-on
 FARTHEST = 2.0  # times as far from the viewer as where it began: no farther towards the horizon
 UP = Vector((0.0, 0.0, 1.0))
+KEY_HINTS = (
+    "X Y Z: axis · 0 to 9: metres along it, or {} · Shift: finer · "
+    "Ctrl: steps, off surfaces · Esc: back"
+)
 SHIFTS = ("Forward", "Left", "Up")  # along a stance's axes
 NO_PIN = "There is no such contact or point"
 BEHIND = "Turn the view so that the pin is in front of you"
@@ -38,10 +42,6 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         "follows as a ghost; letting go adapts. A click chooses it in its list"
     )
     bl_options = {"REGISTER", "UNDO", "BLOCKING", "GRAB_CURSOR"}
-    key_hints = (
-        "X Y Z: axis · 0 to 9: metres along it, or forward · Shift: finer · "
-        "Ctrl: steps, off surfaces · Esc: back"
-    )
 
     contact: bpy.props.IntProperty(
         name="Contact",
@@ -131,11 +131,9 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
     @property
     def _typed_way(self) -> tuple[float, ...]:
         """Where numbers lead, world: along the axis, else the first that the header tells."""
-        axis, row = self._drag.axis, self._row
+        axis, stance = self._drag.axis, self._stance
         if axis is not None:
             return tuple(float(i == axis.value) for i in range(3))
-        found = isinstance(row, HangtimeContact)
-        stance = settings_of(self._armature).stances.get(row.phase) if found else None
         return (1.0, 0.0, 0.0) if stance is None else tuple(stance.forward_axis)
 
     @property
@@ -146,12 +144,20 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
     def let_go(self) -> bool:
         moved, self.ground = self._drag.let_go(), self._standing
         self.shift = Vector(self._drag.shift) / self._metres
+        if self._press.dragging and not moved:  # along Z, or in steps, it stands on nothing
+            self._restore()
         return moved
 
     def put_back(self) -> None:
         self._drag.put_back()
         settings = settings_of(self._armature)
-        settings.active_contact, settings.active_constraint, places, point = self._was
+        settings.active_contact, settings.active_constraint = self._was[:2]
+        self._restore()
+
+    def _restore(self) -> None:
+        """Puts places, and what is stood on, back."""
+        settings = settings_of(self._armature)
+        places, point = self._was[2:]
         for index, (at, on) in places.items():
             place(settings, settings.contacts[index], at.to_tuple(), whole=False)
             settings.contacts[index].on = on
@@ -163,13 +169,15 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         settings = settings_of(self._armature)
         return (settings.active_contact, settings.active_constraint) != self._was[:2]
 
+    @property
+    def key_hints(self) -> str:
+        return KEY_HINTS.format("along X" if self._stance is None else "forward")
+
     def text(self) -> str:
-        shift, row = self._drag.shift, self._row
+        shift, stance = self._drag.shift, self._stance
         names: tuple[str, ...] = ("X", "Y", "Z")
-        if isinstance(row, HangtimeContact):
-            stance = settings_of(self._armature).stances.get(row.phase)
-            if stance is not None:
-                names, shift = SHIFTS, told_along(stance, shift)
+        if stance is not None:
+            names, shift = SHIFTS, told_along(stance, shift)
         # Without adding zero there would be one with a minus.
         moved = (f"{name} {round(by, 3) + 0.0:.3f}" for name, by in zip(names, shift, strict=True))
         way = f"Along {self._drag.axis.name}: " if self._drag.axis is not None else ""
@@ -183,6 +191,15 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         row = self._find_row()
         assert row is not None
         return row
+
+    @property
+    def _stance(self) -> HangtimeStance | None:
+        """Along whose axes it is told how far a contact is moved; None of a point."""
+        row = self._row
+        if isinstance(row, HangtimeConstraint):
+            return None
+        stance: HangtimeStance | None = settings_of(self._armature).stances.get(row.phase)
+        return stance
 
     def _find_row(self) -> HangtimeContact | HangtimeConstraint | None:
         settings = settings_of(self._armature)
