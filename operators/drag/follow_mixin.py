@@ -13,13 +13,19 @@ from ...bridge.repairs.analysed_state import require_in_place
 from ...bridge.repairs.analysis_key import analysis_is_of
 from ...bridge.scene.members import present_members
 from ...bridge.worker_client import shared
-from ...solver.data.faults import ChangedMeanwhile, Fault, RateChanged, SpanChanged
+from ...solver.data.faults import (
+    ChangedMeanwhile,
+    Fault,
+    RateChanged,
+    SpanChanged,
+    TimeStretched,
+)
 from ...solver.data.status import DragStatus
 from ...solver.worker.protocol import Answer, Failed, Followed, Progress
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
 from ..solve.adapt import ask_for, followed_problem, unanalysed
-from ..solve.common import failed, required_armature, said
+from ..solve.common import failed, required_armature
 from ..solve.live import clear_header, live, redraw_viewports, redraw_views
 from ..solve.session import Asked, session
 from ..solve.task import settle
@@ -32,6 +38,8 @@ LOST = "no motion follows there; the ghost stays where it last could"
 ELSEWHERE = "Drag in a 3D viewport"
 TAKEN_AWAY = "The drag has ended: its armature is gone"
 LOOK_EVERY = 0.01  # s; a look costs little, and the ghost waits for the next one
+# The recording is another than was analysed, or is shown otherwise than it is keyed.
+VOIDS = (ChangedMeanwhile, RateChanged, SpanChanged, TimeStretched)
 # s, at most, for which the first move of the mouse waits for its ghost, which mostly takes a third:
 # Blender draws then, and a ghost that comes later is seen a whole drawing later.
 TOGETHER = 0.12
@@ -44,7 +52,7 @@ class FollowedDrag(PolledOperator):
     adapt: bpy.props.BoolProperty(
         name="Adapt", description="Adapt the motion once the mouse lets go", default=True
     )
-    _void = False  # whether the recording is another than was analysed
+    _void = False  # whether a fault is one of `VOIDS`
 
     @classmethod
     def obstacle(cls, context: bpy.types.Context) -> str | None:
@@ -99,11 +107,6 @@ class FollowedDrag(PolledOperator):
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         self._armature = required_armature(context)
         self._press = Press.of(context, event, click=self.release_confirm)
-        try:
-            require_unstretched(present(context.scene))
-            require_in_place(self._armature)
-        except Fault as fault:
-            return self.refuse(said(fault))
         why = ELSEWHERE if context.region_data is None else self.take(context)
         if why is not None:
             return self.refuse(why)
@@ -205,7 +208,8 @@ class FollowedDrag(PolledOperator):
         return {"CANCELLED"}
 
     def _end(self) -> OperatorResult:
-        if self._void:  # the pin is not where it would be found, and its move would be kept
+        # The pin is not where it would be found, and its move would be kept; a click moves nothing.
+        if self._void and self._press.dragging:
             self._back()
             return self.refuse(self._fault, "WARNING")
         moved = self.let_go()
@@ -222,9 +226,11 @@ class FollowedDrag(PolledOperator):
     def _follow(self, context: bpy.types.Context) -> Incremental[None]:
         """Has the worker follow what is dragged, from the press on, though a click shows no ghost:
         of recording and scene as they were read last. They are read again, in parts, once it has
-        told anything, for the first ghost waits for no reading. Raises ChangedMeanwhile where it is
-        another recording, AimedBone.
+        told anything, for the first ghost waits for no reading. Raises TimeStretched,
+        ChangedMeanwhile where it is another recording or elsewhere, AimedBone.
         """
+        require_unstretched(present(context.scene))
+        require_in_place(self._armature)
         reading, asked = ask_for(context), self._read_before(context)
         if asked is None:
             asked = yield from reading
@@ -274,7 +280,7 @@ class FollowedDrag(PolledOperator):
         try:
             next(self._task)
         except Fault as fault:
-            self._void = isinstance(fault, ChangedMeanwhile | RateChanged | SpanChanged)
+            self._void = isinstance(fault, VOIDS)
             session().failure = self._failed(fault)
             redraw_viewports()  # the panel, too
         except StopIteration:

@@ -12,8 +12,6 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import current_action, present
 from hangtime.bridge.takes.takes import look_again
-from hangtime.operators.drag.follow_mixin import FollowedDrag
-from hangtime.operators.drag.mouse import Press
 from hangtime.operators.solve import results as results_module
 from hangtime.operators.solve.results import AcceptOperator
 
@@ -52,18 +50,6 @@ def test_a_scene_that_is_stretched_in_time_is_not_exported(tmp_path: Path) -> No
     assert not path.exists()
     bpy.context.scene.render.frame_map_new = 100
     assert bpy.ops.hangtime.export(filepath=str(path)) == {"FINISHED"}
-
-
-@pytest.mark.usefixtures("stretched")
-def test_nothing_is_dragged_in_a_scene_that_is_stretched_in_time(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(Press, "of", lambda *_, **__: None)
-    told: list[str] = []
-    drag = SimpleNamespace(release_confirm=False, refuse=lambda why: told.append(why))
-    FollowedDrag.invoke(drag, bpy.context, None)
-    assert len(told) == 1
-    assert "Time Stretching" in told[0]
 
 
 @pytest.fixture

@@ -90,6 +90,13 @@ class Drag(FollowedDrag):
     def put_back(self) -> None:
         self._armature.hangtime.contacts[self.held].at = self._was
 
+    def let_go(self) -> bool:
+        self.put_back()  # a click
+        return False
+
+    def chosen(self) -> bool:
+        return True
+
     def leave(self) -> None:
         session().running.remove(self)
 
@@ -225,22 +232,36 @@ def test_what_is_asked_of_an_aimed_head_is_refused_as_the_drag_begins(
 
 
 @pytest.mark.parametrize(
-    ("change", "told"), [("location", "its place"), ("scale", "its scale or the scene")]
+    ("change", "told"),
+    [
+        ("location", "its place"),
+        ("scale", "its scale or the scene"),
+        ("stretched", "Time Stretching"),
+    ],
 )
-def test_nothing_is_dragged_of_an_armature_that_was_moved_since(
-    analysed, monkeypatch: pytest.MonkeyPatch, change: str, told: str
+def test_nothing_is_dragged_of_an_armature_that_is_shown_otherwise_than_it_was_analysed(
+    analysed, asked: Asked, change: str, told: str
 ) -> None:
+    """A click chooses a handle all the same."""
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
-    monkeypatch.setattr(Press, "of", lambda *_, **__: None)
-    setattr(analysed, change, 2.0 * Vector((1.0, 1.0, 1.0)))
+    if change == "stretched":
+        bpy.context.scene.render.frame_map_new = 150
+    else:
+        setattr(analysed, change, 2.0 * Vector((1.0, 1.0, 1.0)))
     bpy.context.view_layer.update()
     drag, row = Drag(analysed), analysed.hangtime.contacts["Left toe 2"]
     was = Vector(row.at)
-    drag.release_confirm = True
-    assert drag.invoke(bpy.context, None) == {"CANCELLED"}
+    for clicked in (True, False):
+        drag.begin()
+        drag._press.dragging = not clicked
+        drag._task, drag._fault = drag._follow(bpy.context), ""
+        drag._look()
+        assert told in drag._fault
+        assert drag._end() == ({"FINISHED"} if clicked else {"CANCELLED"})
+        assert len(drag.refused) == (not clicked)
     assert told in drag.refused[0]
-    assert "press Analyze again" in drag.refused[0]
     assert tuple(row.at) == tuple(was)
+    assert not asked.problems
     assert not session().running
 
 
@@ -248,6 +269,7 @@ def test_a_drag_of_what_was_not_analysed_is_put_back(analysed, asked: Asked) -> 
     row, drag = analysed.hangtime.contacts["Left toe 2"], Drag(analysed)
     was = Vector(row.at)
     drag.begin()
+    drag._press.dragging = True
     curves_of(analysed)[0].keyframe_points[150].co[1] += 0.1
     drag._task, drag._fault = drag._follow(bpy.context), ""
     for _ in range(1000):
