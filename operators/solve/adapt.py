@@ -140,7 +140,9 @@ class Adapting(TaskOperator):
         meant = replace(asked.problem, frames=frames)
         for doubt in (*window_doubts(settings, asked.recording, meant), *empty_doubts(left)):
             self.report({"WARNING"}, doubt)
-        return replace(asked, problem=replace(asked.problem, requests=requests))
+        asked = replace(asked, problem=replace(asked.problem, requests=requests))
+        yield None  # on large rigs the rest takes long
+        return replace(asked, state=AnalysedState.of(armature))
 
 
 class AdaptOperator(Adapting, bpy.types.Operator):
@@ -233,7 +235,6 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
         looped,
         scene,
         aimed,
-        AnalysedState.of(armature),
     )
 
 

@@ -28,7 +28,8 @@ class Asked:
     recording and the scene's surfaces were, what was asked, and which bones stay aimed.
 
     settings: those that ask for it, as the artist may change them before it is solved. result,
-    keys, loop: what they say of these, for the same reason. state: what the recording was made of.
+    keys, loop: what they say of these, for the same reason. state: what the recording is made of,
+    where a result is to be written.
     """
 
     armature: str
