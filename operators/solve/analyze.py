@@ -184,6 +184,8 @@ def analysis(
     bind = _leave_out_bind_pose(settings, recording)
     if bind:
         recording = yield from read_wanted(armature)
+    # Now, as it may be moved while it is analysed.
+    state, stood = AnalysedState.of(armature), armature.matrix_world.copy()
     recorded = shown_range(armature, present(recorded_action(armature)))
     span = span_of(settings, recording)
     _require_inside(armature, span, recorded)
@@ -205,6 +207,7 @@ def analysis(
             break
         _take_cycle(settings, answer.cycle)
         recording = yield from read_wanted(armature)
+        state, stood = AnalysedState.of(armature), armature.matrix_world.copy()
         problem = asked(recording)
         answer = yield from _analysed(armature, recording, problem)
     contacts, flights = len(answer.schedule.contacts), len(answer.schedule.flights)
@@ -220,8 +223,8 @@ def analysis(
         session().support = (armature.session_uid, tuple(boxes))
     yield None
     lost = write_analysis(settings, recording, answer)
-    settings.analysed_state = AnalysedState.of(armature).as_text()
-    keep(armature, answer.traces, armature.matrix_world)
+    settings.analysed_state = state.as_text()
+    keep(armature, answer.traces, stood)
     settings.shapes_told = shapes_told(bound, answer.bones, answer.fleshed)
     scene_settings(context.scene).armature = armature
     found = f"Found {contacts} contacts and {flights or 'no'} flight{'s' if flights > 1 else ''}"

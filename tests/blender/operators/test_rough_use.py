@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
+from hangtime.bridge.accessors import present
 from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.armature.traces_store import kept
 from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.bridge.files.import_clip import import_clip
 from hangtime.bridge.polish.samples import written_of
-from hangtime.bridge.repairs.analysed_state import AnalysedState
+from hangtime.bridge.repairs.analysed_state import PLACE, AnalysedState, changed_since_analysis
 from hangtime.bridge.takes.takes import EDIT_CHANGED, AskedSettings, look_again
 from hangtime.bridge.worker_client import shared
+from hangtime.operators.solve import analyze
 from hangtime.operators.solve import write_answer as write_answer_module
-from hangtime.operators.solve.adapt import ask_for
+from hangtime.operators.solve.adapt import AdaptOperator, ask_for
 from hangtime.operators.solve.analyze import AnalyzeOperator, FitOperator
 from hangtime.operators.solve.common import said
 from hangtime.operators.solve.keys import mark_contacts
@@ -124,6 +128,40 @@ def test_a_change_meanwhile_is_said_to_have_cost_the_result(
         session().solving = None
     assert "thrown away" in said(fault.value)
     assert told in said(fault.value)
+
+
+def test_an_armature_that_is_moved_while_it_is_analysed_is_elsewhere_than_its_contacts(
+    analysed: bpy.types.Object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    in_peace = analyze._analysed
+
+    def meanwhile(*asked: object) -> Task:
+        answer = yield from in_peace(*asked)
+        analysed.location.x += 1.0
+        bpy.context.view_layer.update()
+        return answer
+
+    stood = analysed.matrix_world.copy()
+    monkeypatch.setattr(analyze, "_analysed", meanwhile)
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert changed_since_analysis(analysed) == (PLACE,)
+    assert present(kept(analysed)).stood == stood
+    with pytest.raises(RuntimeError, match=r"changed since the analysis \(its place\)"):
+        bpy.ops.hangtime.fit()
+
+
+def test_what_adapt_begins_from_is_known_and_no_drag_waits_for_that(
+    analysed: bpy.types.Object,
+) -> None:
+    """It looks through all keys, which takes long on large rigs."""
+    assert complete(ask_for(bpy.context)).state is None
+    adapting = SimpleNamespace(solution=lambda _, asked: asked, report=lambda *_: None)
+    session().solving = Solving()
+    try:
+        asked = complete(AdaptOperator._asked(adapting, bpy.context))
+    finally:
+        session().solving = None
+    assert asked.state == AnalysedState.of(analysed)
 
 
 @pytest.mark.parametrize("name", ["analyze", "fit"])
