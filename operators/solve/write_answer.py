@@ -52,7 +52,13 @@ from ...bridge.takes.write_result import (
 )
 from ...solver.body.character import build_character
 from ...solver.body.proportions import changed_recording
-from ...solver.data.faults import ChangedMeanwhile, Fault, RateChanged
+from ...solver.data.faults import (
+    ArmatureGone,
+    ChangedMeanwhile,
+    EditedMeanwhile,
+    Fault,
+    RateChanged,
+)
 from ...solver.data.recording import PoseTrack, same_motion
 from ...solver.data.solver_options import Method
 from ...solver.worker.protocol import Adapted
@@ -81,7 +87,6 @@ HELD = (
     "Constraints keep {} from the result (frame {:g}), so it is not what was solved; mute them and "
     "press Update"
 )
-GONE = "it was removed"
 FORMS = {
     WrittenAs.ACTION: "action",
     WrittenAs.STRIP: "strip",
@@ -105,7 +110,7 @@ OTHERS_HIDDEN = (
 
 def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
     """Writes an answer as a new action; returns how it went. Raises RateChanged,
-    ChangedMeanwhile, ReturnTooEarly.
+    ChangedMeanwhile, ArmatureGone, EditedMeanwhile, ReturnTooEarly.
 
     Surfaces that changed meanwhile do not void it: it says that it is not about them any more.
     """
@@ -350,7 +355,7 @@ def _note(
 
 def _unchanged(asked: Asked) -> Incremental[bpy.types.Object]:
     """The armature, if it and its recording are what they were. Raises RateChanged,
-    ChangedMeanwhile, TimeStretched."""
+    ChangedMeanwhile, ArmatureGone, EditedMeanwhile, TimeStretched."""
     require_unstretched(current_scene())
     before, rate = asked.recording.rate, frames_per_second(current_scene())
     if not isclose(before, rate, rel_tol=SAME_RATE):
@@ -358,7 +363,11 @@ def _unchanged(asked: Asked) -> Incremental[bpy.types.Object]:
     # What was deleted is in the file until that is saved, but in no scene.
     there = (each for each in bpy.data.objects if each.users_scene)
     armature = next((each for each in there if each.session_uid == asked.uid), None)
-    if armature is not None and armature.mode != "EDIT" and recorded_action(armature) is not None:
+    if armature is None:
+        raise ArmatureGone(asked.armature)
+    if armature.mode == "EDIT":
+        raise EditedMeanwhile(armature.name)
+    if recorded_action(armature) is not None:
         frames = asked.recording.frames
         try:
             now = yield from read_recorded_incrementally(armature, frames[0], frames[-1])
@@ -369,10 +378,8 @@ def _unchanged(asked: Asked) -> Incremental[bpy.types.Object]:
     raise _changed(asked, armature)
 
 
-def _changed(asked: Asked, armature: bpy.types.Object | None) -> ChangedMeanwhile:
+def _changed(asked: Asked, armature: bpy.types.Object) -> ChangedMeanwhile:
     """What is to be said of an armature, by its present name, that is another than was asked
-    about; None: that is gone."""
-    if armature is None:
-        return ChangedMeanwhile(asked.armature, while_solving=True, changed=(GONE,))
+    about."""
     parts = () if asked.state is None else AnalysedState.of(armature).since(asked.state)
     return ChangedMeanwhile(armature.name, while_solving=True, changed=parts)

@@ -5,6 +5,7 @@ messages.py.
 """
 
 from ....solver.data.faults import Fault
+from .changes import CHANGES
 from .faults import FAULTS
 from .faults import PLACES as PLACES
 from .outcomes import ASKED as ASKED
@@ -17,4 +18,4 @@ from .outcomes import OUTCOMES as OUTCOMES
 from .rigs import MORE_NAMES as MORE_NAMES
 from .rigs import RIGS
 
-TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {**FAULTS, **RIGS}
+TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {**FAULTS, **CHANGES, **RIGS}

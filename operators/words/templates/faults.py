@@ -1,4 +1,4 @@
-"""What is said of every fault but a rig's."""
+"""What is said of every fault but a rig's and of changes meanwhile."""
 
 from ....solver.data import faults
 from ....solver.data.faults import Fault
@@ -332,34 +332,6 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     faults.NameMissing: "A constraint ({kind}) has no name; give it one in the list.",
     faults.WorkerDied: "The solver stopped without an answer ({detail}); nothing was changed. Try "
     "again, and report it if it happens twice.",
-    faults.RateChanged: (
-        "Nothing was done, because the scene's frame rate changed from {before:.5g} to {now:.5g} "
-        "frames a second since the analysis, and the recording plays at another speed; set it back "
-        "to {before:.5g} (Output > Format > Frame Rate), or press Analyze again.",
-        "The result was thrown away, because the scene's frame rate changed from {before:.5g} to "
-        "{now:.5g} frames a second while it was solved; set it back to {before:.5g} (Output > "
-        "Format > Frame Rate) and try again, or press Analyze.",
-    ),
-    faults.TimeStretched: "The scene shows the keys of frame {old} at its frame {new} (Output > "
-    "Frame Range > Time Stretching), so neither their frames nor their speeds are those that are "
-    "seen; make Old and New the same while you adapt and export.",
-    faults.LostEdits: "What you changed about {contacts:names} is gone, for an analysis finds no "
-    "such contact any more; look through the contacts, and move them again.",
-    faults.SpanChanged: "Nothing was done, because frames {now[0]:g} to {now[1]:g} are to be "
-    "adapted now, but {before[0]:g} to {before[1]:g} were analysed; press Analyze again, or choose "
-    "those frames again (Frame Range, in the panel Recording).",
-    faults.ChangedMeanwhile: (
-        "Nothing was done, because the armature “{armature}”, its bones, place, constraints or "
-        "what they follow, keys, repairs, frame range or Loop, or the scene's frame rate or unit "
-        "scale changed since the analysis; press Analyze again.",
-        "The result was thrown away, because the armature “{armature}”, its bones, place, "
-        "constraints or what they follow, keys or repairs, or the scene's unit scale changed since "
-        "the analysis; press Analyze again.",
-        "Nothing was done, because the armature “{armature}” changed since the analysis "
-        "({changed:names}); press Analyze again.",
-        "The result was thrown away, because the armature “{armature}” changed while it was solved "
-        "({changed:names}); press Analyze again.",
-    ),
     faults.BadDimensions: "The figure cannot be reduced to {given} dimensions; choose from 1 to "
     "{most}, or leave them out to have them chosen.",
     faults.UnknownReductionBone: "Row {row} of the reduction's matrix names “{bone}”, whose joint "

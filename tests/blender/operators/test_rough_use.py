@@ -30,7 +30,7 @@ from hangtime.operators.solve.session import Asked, session
 from hangtime.operators.solve.solving import SolveState, Solving
 from hangtime.operators.solve.task import Task, TaskOperator
 from hangtime.operators.solve.write_answer import write_answer
-from hangtime.solver.data.faults import ChangedMeanwhile, NoArmature, RateChanged
+from hangtime.solver.data.faults import Fault, NoArmature
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.worker.protocol import RequestKind
 from hangtime.tests.blender.helpers import rigs
@@ -98,7 +98,8 @@ def test_a_contact_that_ends_before_it_begins_is_named(run: bpy.types.Object) ->
         ("no keys", "its keys"),
         ("uneven scale", "its scale"),
         ("frame rate", "frame rate"),
-        ("deleted", "it was removed"),
+        ("deleted", "was removed while it was solved; undo that"),
+        ("edit mode", "leave edit mode, and try again"),
         ("renamed", "“Hero” changed while it was solved (its bones)"),
     ],
 )
@@ -118,11 +119,13 @@ def test_a_change_meanwhile_is_said_to_have_cost_the_result(
     elif change == "deleted":  # which keeps it in the file until that is saved
         for collection in run.users_collection:
             collection.objects.unlink(run)
+    elif change == "edit mode":
+        bpy.ops.object.mode_set(mode="EDIT")
     else:
         bpy.context.scene.render.fps = 24
     session().solving = replace(Solving(), state=SolveState.SOLVING)
     try:
-        with pytest.raises((ChangedMeanwhile, RateChanged)) as fault:
+        with pytest.raises(Fault) as fault:
             complete(write_answer(asked, None))
     finally:
         session().solving = None
