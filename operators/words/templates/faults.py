@@ -59,8 +59,8 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     faults.NoRootBone: "“{armature}” has no bone above the pelvis “{pelvis}” that could carry root "
     "motion; choose In Place or Hips, or parent the pelvis to a root bone.",
     faults.AimedBone: "“{request}” is about the bone “{bone}”, which the result leaves to the "
-    "constraints or drivers that aim neck or head; mute what aims neck and head, or bake the "
-    "action and delete that, then press Analyze again; or switch “{request}” off.",
+    "constraints or drivers that aim neck or head; mute what aims neck and head (or bake the "
+    "action and delete that) and press Analyze again, or switch “{request}” off.",
     faults.ZeroLengthBone: "The bone “{bone}” has no length, so it cannot carry mass; give it one "
     "in edit mode, or choose another bone for that part of the body.",
     faults.MissingPart: (
@@ -136,8 +136,8 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     "or allow writing there.",
     faults.WouldReplaceInput: "The result would be written over {path}, from which it is made; "
     "choose another folder with --out.",
-    faults.ContradictoryPins: "“{first}” and “{second}” contradict each other by {metres:length}; "
-    "no pose holds both, so move one of them or move them together.",
+    faults.ContradictoryPins: "“{first}” and “{second}” contradict each other by {metres:length}, "
+    "and no pose holds both; move one of them, or move them together.",
     faults.NoSolution: (
         "{reason:outcome}{asked:asked}{damages:damages}",
         "{reason:outcome}{asked:asked}{damages:damages} Furthest off: {worst:missed}.",
@@ -192,10 +192,10 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
         "none does under load, so something unseen carries it meanwhile; correct their contacts, "
         "choose frames without it, or let what they ride on be ground in the panel World.",
         "The figure lies: another axis than Z points from its feet to its head, so the body does "
-        "not fall where neither foot touches the ground. Import the clip again with other axes, "
+        "not fall where neither foot touches the ground; import the clip again with other axes, "
         'or turn it upright (Examine, Turn Upright; up = "…" in a recipe).',
         "From frame {first:g} to {last:g} the feet rest on the ground, but no contact holds them, "
-        "so something unseen carries the body. Let the feet touch; where a chair or a table "
+        "so something unseen carries the body; let the feet touch. Where a chair or a table "
         "carries it this may stay so, or a Point with Pushes Back on the pelvis or the hand takes "
         "it over.",
     ),
@@ -240,11 +240,11 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     "import it again at {factor:plain} times the scale, or scale its object so.",
     faults.OddScale: "“scale = {scale:g}” makes the figure {metres:.3g} m tall, which nobody is; "
     "{factor:plain} would make a person of it.",
-    faults.OutsideKeys: "In the chosen frames “{armature}” has no keys; they lie from frame "
-    "{first:g} to {last:g}, so choose frames there.",
+    faults.OutsideKeys: "In the chosen frames “{armature}” has no keys (they lie from frame "
+    "{first:g} to {last:g}); choose frames there.",
     faults.SourceOutsideKeys: "What is read is “{source}”, from which “{result}” was made, and it "
-    "has no keys in the chosen frames; they lie from frame {first:g} to {last:g}. To read the "
-    "result that is shown press Start From: This Result, or choose frames there.",
+    "has no keys in the chosen frames (they lie from frame {first:g} to {last:g}); choose frames "
+    "there, or press Start From: This Result to read the result that is shown.",
     faults.UnknownContactName: "There is no contact “{name}” in these frames; there are "
     "{known:names}.",
     faults.UnknownBone: "“{request}” names the bone “{bone}”, which the armature does not have; "
@@ -256,7 +256,7 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     faults.BeyondReason: "“{request}” asks for a factor of {amount:g}; give it one of at most "
     "{most:g}.",
     faults.UnknownPhaseIn: "“{request}” is about the phase “{phase}”, which the clip does not "
-    "have; it has {known:names}.",
+    "have; choose one of {known:names}.",
     faults.JoinedPhase: (
         "“{request}” is about the phase “{phase}”, in which something unseen carries the body, so "
         "that it is no phase by itself; choose frames in which what carries the body is recorded.",
@@ -265,7 +265,7 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
         "body is recorded.",
     ),
     faults.StillBone: "“{request}” names the bone “{bone}”, which is none of those that physics "
-    "moves; those most like it are {likeliest:names}.",
+    "moves; choose one, such as {likeliest:names}.",
     faults.BadTiming: "“{request}” would last {seconds:.3f} s; change its frames, phase or "
     "duration.",
     faults.BesideFrames: "“{request}” is about frame {at:g}, but the adapted frames are {first:g} "
@@ -282,8 +282,8 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
         "“{request}” is about {touching:names}, which does not touch then; name contacts, points "
         "or bones that the analysis lists.",
     ),
-    faults.WrongAngle: "“{request}” names an angle that the joint of “{bone}” does not have; it "
-    "has {count}, counted from 0.",
+    faults.WrongAngle: "“{request}” names an angle that the joint of “{bone}” does not have; "
+    "name one of its {count}, counted from 0.",
     faults.FreePoint: "“{request}” is pushed by the world but held in no direction; hold it in one "
     "at least, or let it be no part of the environment.",
     faults.TakenName: "“{request}” is called like a contact that was found; give it a name of its "
@@ -293,20 +293,20 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     faults.TimedTwice: "“{request}” is the second to say how long “{phase}” takes; keep one.",
     faults.TooMuchTime: "With “{request}” the motion would be {seconds:.4g} s longer than it was "
     "recorded, and {most:g} s are the most that can be added; ask for less.",
-    faults.BeyondPrecision: "“{request}” moves what touches by {metres:.0f} m; beyond {most:.0f} m "
-    "places are too coarse for contacts. Lengths are in metres: move it less, or move the armature "
-    "with the whole scene.",
+    faults.BeyondPrecision: "“{request}” moves what touches by {metres:.0f} m, and beyond "
+    "{most:.0f} m places are too coarse for contacts (lengths are in metres); move it less, or "
+    "move the armature with the whole scene.",
     faults.OutOfReach: "“{request}” is {metres:length} from “{other}”, with {seconds:.2f} s "
     "between them: nobody goes so far in that time. Move it nearer, give it more time, or switch "
     "Human Ranges off for a figure that is no human.",
     faults.PeakTooLow: "“{request}” lets the ground push with {peak:plain} body weights at most, "
-    "with which nobody keeps off the floor so long; {least:.2f} would not be enough either. Raise "
-    "its peak, or let it hold for a shorter time.",
+    "with which nobody keeps off the floor so long, nor with {least:.2f}; raise its peak, or let "
+    "it hold for a shorter time.",
     faults.PoseHeld: "“{request}” holds the whole body, which then stands and lands where it did, "
     "but “{pin}” moves that by {metres:length}; let the pose hold in one phase or fewer bones, or "
     "give it slack or a weight.",
     faults.NoBoneChosen: "“{request}” is about no bone yet; choose one, or switch it off.",
-    faults.NoPhaseChosen: "“{request}” holds in a phase, but none is chosen; there are "
+    faults.NoPhaseChosen: "“{request}” holds in a phase, but none is chosen; choose one of "
     "{known:names}.",
     faults.EmptyRange: "“{request}” ends at frame {last:g}, before it begins at frame {first:g}; "
     "swap them.",
@@ -330,8 +330,8 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     faults.NamedTwice: "“{request}” is the name of two constraints, body changes or contacts; "
     "rename one, so that the report can tell them apart.",
     faults.NameMissing: "A constraint ({kind}) has no name; give it one in the list.",
-    faults.WorkerDied: "The solver stopped without an answer ({detail}); nothing was changed. Try "
-    "again, and report it if it happens twice.",
+    faults.WorkerDied: "The solver stopped without an answer ({detail}), and nothing was changed; "
+    "try again, and report it if it happens twice.",
     faults.BadDimensions: "The figure cannot be reduced to {given} dimensions; choose from 1 to "
     "{most}, or leave them out to have them chosen.",
     faults.UnknownReductionBone: "Row {row} of the reduction's matrix names “{bone}”, whose joint "
@@ -341,14 +341,14 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     faults.DependentRows: "Of the {rows} rows of the reduction's matrix only {rank} say something "
     "that the others do not; leave out the empty and the repeated ones.",
     faults.UnknownPhase: "The pin “{pin}” names the phase “{phase}”, on which nothing touches the "
-    "ground; there are {known:names}.",
+    "ground; name one of {known:names}.",
     faults.GroundNotThere: "The pin “{pin}” stands on “{object}” from frame {needed[0]:.1f} to "
     "{needed[1]:.1f} ({phase}), but its motion is known from frame {known[0]:g} to {known[1]:g} "
     "only; key it for all of these frames, or pin another phase.",
     faults.JerkyGround: "“{object}”, on which the pin “{pin}” stands, jumps at frame {frame:.0f} "
     "({acceleration:.0f} m/s²), and nobody could stay on it; smooth its keys there.",
     faults.UnknownContact: "The pin “{pin}” names “{what}”, which does not touch in its phase; "
-    "what touches is {known:names}.",
+    "name one of those that do: {known:names}.",
     faults.PinLetGo: "The pin “{pin}” moves {contacts:names}, which cannot be held beside the "
     "recording's other contacts, so the fit let go of what it moves; correct these contacts' "
     "frames, or pin others.",
@@ -373,7 +373,7 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     "report can tell them apart.",
     faults.UnknownObject: (
         "“{request}” names the object “{thing}”, but the scene has none; add it as an object.",
-        "“{request}” names the object “{thing}”, which the scene does not have; it has "
+        "“{request}” names the object “{thing}”, which the scene does not have; name one of "
         "{known:names}.",
     ),
     faults.NotGround: "“{request}” stands on “{thing}”, which is an obstacle; make it ground, or "
@@ -382,8 +382,8 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
         "“{request}” stands on “{thing}”, but “{contact}” would be beside it: none of its faces "
         "is above or below; move the pin over it, or the object under the pin.",
         "“{request}” stands on “{thing}”, but “{contact}” would be beside it, at "
-        "x = {at[0]:.2f} m, y = {at[1]:.2f} m; it reaches over x = {reach[0][0]:.2f} to "
-        "{reach[0][1]:.2f} m, y = {reach[1][0]:.2f} to {reach[1][1]:.2f} m. Move the pin over it, "
+        "x = {at[0]:.2f} m, y = {at[1]:.2f} m (it reaches over x = {reach[0][0]:.2f} to "
+        "{reach[0][1]:.2f} m, y = {reach[1][0]:.2f} to {reach[1][1]:.2f} m); move the pin over it, "
         "or the object under the pin.",
     ),
     faults.OverTheEdge: "“{request}” stands on “{thing}”, but “{contact}” hangs over the edge of "

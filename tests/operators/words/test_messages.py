@@ -12,9 +12,17 @@ from typing import get_type_hints
 import hangtime.solver
 import pytest
 from hangtime.devtools.doctor.damages.poses import stretched
-from hangtime.operators.words.failure_text import failure_of
+from hangtime.operators.words.failure_text import BEFORE_CURE, failure_of
 from hangtime.operators.words.messages import sentence, together
-from hangtime.operators.words.templates import MISSED, OUTCOMES, TEMPLATES, faults, outcomes, rigs
+from hangtime.operators.words.templates import (
+    MISSED,
+    OUTCOMES,
+    TEMPLATES,
+    changes,
+    faults,
+    outcomes,
+    rigs,
+)
 from hangtime.solver.data.faults import (
     BadRecipe,
     Damage,
@@ -107,7 +115,7 @@ def test_every_template_can_be_filled(kind: type[Fault]) -> None:
         assert "{" not in words
 
 
-@pytest.mark.parametrize("templates", [faults, outcomes, rigs])
+@pytest.mark.parametrize("templates", [changes, faults, outcomes, rigs])
 def test_every_template_is_one_literal_for_translators(templates: ModuleType) -> None:
     body = ast.parse(inspect.getsource(templates)).body
     tables = [each.value for each in body if isinstance(each, ast.Assign | ast.AnnAssign)]
@@ -145,6 +153,27 @@ def test_a_line_that_may_be_cut_off_begins_with_the_cure() -> None:
         ". Nothing was done, because frames 1 to 60 are to be adapted now, but 1 "
         "to 90 were analysed."
     )
+
+
+def test_a_remark_in_brackets_is_no_cure() -> None:
+    lying = failure_of(UnseenSupport(1.0, 9.0, lying=True), 1, "analyze")
+    assert lying.cure_first.startswith("Import the clip again with other axes, or turn it upright")
+    assert lying.cure_first.endswith("neither foot touches the ground.")
+    assert lying.short.startswith("The figure lies")
+
+
+@pytest.mark.parametrize(
+    "template",
+    [
+        each
+        for fault, told in TEMPLATES.items()
+        if not issubclass(fault, NoSolution)  # whose rows are told in its place
+        for each in ([told] if isinstance(told, str) else told)
+    ],
+)
+def test_it_is_clear_where_the_cure_begins(template: str) -> None:
+    """A header shows it first, and may cut off the rest."""
+    assert len(BEFORE_CURE.split(template)) <= 2
 
 
 def test_a_fault_without_words_is_noticed() -> None:

@@ -105,7 +105,7 @@ def test_of_what_is_beside_an_object_both_places_are_told() -> None:
     at = caught.value.at
     assert at is not None
     assert np.hypot(at[0] - x, at[1] - y) < 0.5
-    told = f"at x = {at[0]:.2f} m, y = {at[1]:.2f} m; it reaches over x = 8.50 to 9.50 m, y = -2.00"
+    told = f"at x = {at[0]:.2f} m, y = {at[1]:.2f} m (it reaches over x = 8.50 to 9.50 m, y = -2.00"
     assert told in sentence(caught.value)
 
 
