@@ -93,14 +93,17 @@ class PinDrag(_Drag):
         if self.axis is not None:
             moved = [each if i == self.axis.value else 0.0 for i, each in enumerate(moved)]
         far = max(hypot(*moved) / FURTHEST, 1.0)  # near the horizon a pixel is a mile
-        self._shift = (moved[0] / far, moved[1] / far, moved[2] / far)
-        self._land(holds=not snap and self.axis is not Axis.Z)
-        return self.place
+        return self._go((moved[0] / far, moved[1] / far, moved[2] / far), lands=not snap)
 
     def set(self, shift: Vector) -> Vector:
-        """The same by numbers, wherever the mouse is, which goes on from there."""
-        self._loose = self._mouse = shift
-        return self.move(shift)
+        """The same by numbers, wherever the mouse is, which leads again as if nothing was typed."""
+        self._require_dragging()
+        return self._go(shift, lands=True)
+
+    def _go(self, shift: Vector, *, lands: bool) -> Vector:
+        self._shift = shift
+        self._land(holds=lands and self.axis is not Axis.Z)
+        return self.place
 
     def _land(self, *, holds: bool) -> None:
         """Takes the height of the face that the pin is above or below. holds: False lets go."""
@@ -158,15 +161,16 @@ class ValueDrag(_Drag):
         self._loose += (PRECISE if precise else 1.0) * (mouse - self._mouse)
         self._mouse = mouse
         value = self.start + self._loose
-        if snap:
-            value = self.step * round(value / self.step)
-        self._value = min(max(value, self.low), self.high)
-        return self._value
+        return self._go(self.step * round(value / self.step) if snap else value)
 
     def set(self, by: float) -> float:
-        """The same by a number, wherever the mouse is, which goes on from there."""
-        self._loose = self._mouse = by
-        return self.move(by)
+        """The same by a number, wherever the mouse is, which leads again as if nothing was typed."""
+        self._require_dragging()
+        return self._go(self.start + by)
+
+    def _go(self, value: float) -> float:
+        self._value = min(max(value, self.low), self.high)
+        return self._value
 
     def let_go(self) -> bool:
         """Returns whether the value has changed."""

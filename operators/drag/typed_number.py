@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+MOST_DIGITS = 9  # with the point; the rest would be lost in single precision
+
 
 @dataclass
 class TypedNumber:
@@ -18,12 +20,16 @@ class TypedNumber:
         elif character == "-":
             self.negative = not self.negative
         elif character and character in ".,":
-            self.digits += "" if "." in self.digits else "."
+            self._add("" if "." in self.digits else ".")
         elif character.isascii() and character.isdigit():
-            self.digits += character
+            self._add(character)
         else:
             return False
         return True
+
+    def _add(self, character: str) -> None:
+        if len(self.digits) < MOST_DIGITS:
+            self.digits += character
 
     def __bool__(self) -> bool:
         """Whether anything is typed, such as a minus."""

@@ -123,7 +123,8 @@ def test_after_its_end_nothing_drags(end: str) -> None:
         pin.move((0.1, 0.0, 0.0))
     with pytest.raises(ValueError, match="the drag is"):
         pin.key(Axis.X)
-    for late in (pin.let_go, pin.put_back, value.let_go, value.put_back, lambda: value.move(0.1)):
+    late_moves = (lambda: value.move(0.1), lambda: value.set(0.1), lambda: pin.set(START))
+    for late in (pin.let_go, pin.put_back, value.let_go, value.put_back, *late_moves):
         with pytest.raises(ValueError, match="the drag is"):
             late()
 
@@ -162,11 +163,24 @@ def test_a_value_that_was_put_back_is_what_it_was() -> None:
     assert not ValueDrag(0.5, 0.0, 1.0, STEP).let_go()
 
 
-def test_a_number_moves_a_pin_wherever_the_mouse_is_and_that_goes_on_from_there() -> None:
+@pytest.mark.parametrize(("precise", "leads"), [(False, 0.6), (True, 0.51)])
+def test_a_number_moves_a_pin_wherever_the_mouse_is_which_leads_again_as_before(
+    precise: bool, leads: float
+) -> None:
     drag = PinDrag(START)
     drag.move((0.5, 0.5, 0.0))
     assert drag.set((0.2, 0.0, 0.0)) == pytest.approx((1.2, 2.0, 0.0))
-    assert drag.move((0.3, 0.4, 0.0)) == pytest.approx((1.3, 2.4, 0.0))
+    now = drag.move((0.6, 0.5, 0.0), precise=precise)
+    assert now == pytest.approx((1.0 + leads, 2.5, 0.0))
+
+
+def test_a_number_is_meant_however_far_it_leads() -> None:
+    assert PinDrag(START).set((12.0, 0.0, 0.0)) == pytest.approx((13.0, 2.0, 0.0))
+
+
+def test_a_number_lands_a_pin_on_what_is_there() -> None:
+    drag = PinDrag(START, lands=crate)
+    assert drag.set((0.8, 0.0, 0.0)) == pytest.approx((1.8, 2.0, 0.5))
 
 
 def test_a_number_on_an_axis_is_of_that_alone() -> None:
@@ -178,4 +192,5 @@ def test_a_number_changes_a_value_by_as_much_from_its_start() -> None:
     drag = ValueDrag(radians(10.0), -inf, inf, STEP)
     drag.move(radians(33.0))
     assert drag.set(radians(-15.0)) == pytest.approx(radians(-5.0))
-    assert drag.move(radians(1.0)) == pytest.approx(radians(11.0))
+    assert drag.move(radians(53.0), precise=True) == pytest.approx(radians(45.0))
+    assert drag.move(radians(54.0)) == pytest.approx(radians(46.0))

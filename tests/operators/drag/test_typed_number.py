@@ -25,6 +25,7 @@ def typed(keys: str) -> TypedNumber:
         ("2--", 2.0, "2"),
         ("-", 0.0, "-"),
         ("0.25<<3", 0.3, "0.3"),
+        ("12345678901", 123456789.0, "123456789"),
     ],
 )
 def test_keys_make_a_number(keys: str, value: float, told: str) -> None:
