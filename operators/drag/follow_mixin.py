@@ -295,7 +295,8 @@ class FollowedDrag(PolledOperator):
 
     def _show(self) -> None:
         typed = f"[{self._typed}] " if self._typed else ""
-        text = self._fault or typed + self.text() + self._found()
+        found = f" · {self._fault}" if self._fault else self._found()
+        text = typed + self.text() + found  # numbers first: what is wrong may be cut off
         if text != self._shown:  # drawing the header again costs more than a look
             self._shown = text
             self._area.header_text_set(text)

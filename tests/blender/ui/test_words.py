@@ -36,7 +36,7 @@ def test_what_a_drag_onto_a_surface_tells_fits_into_a_small_window(
     assert blf.dimensions(FONT_ID, f"{place}{found}")[0] < HEADER
 
 
-def test_a_refused_drag_is_told_before_all_else_and_keys_are_not() -> None:
+def test_a_drag_tells_its_numbers_also_where_no_motion_follows() -> None:
     told: list[str] = []
     drag = SimpleNamespace(
         _fault="Press Analyze again.",
@@ -51,4 +51,11 @@ def test_a_refused_drag_is_told_before_all_else_and_keys_are_not() -> None:
     follow_mixin.FollowedDrag._show(drag)
     drag._typed.key("TWO", "2")
     follow_mixin.FollowedDrag._show(drag)
-    assert told == ["Press Analyze again.", "Up 0.252 m", "[2] Up 0.252 m"]
+    drag._fault = "Press Analyze again."
+    follow_mixin.FollowedDrag._show(drag)
+    assert told == [
+        "Up 0.252 m · Press Analyze again.",
+        "Up 0.252 m",
+        "[2] Up 0.252 m",
+        "[2] Up 0.252 m · Press Analyze again.",
+    ]
