@@ -180,7 +180,7 @@ def nearness(fit: FitQuality) -> str:
 def unseen_lines(found: Sequence[UnseenSupportReport]) -> list[str]:
     """Where something unseen carries the body, with what may be done, and where it only turns it:
     lines."""
-    carried, turned = ([u for u in found if (u.force_bw > CARRIES) is on] for on in (True, False))
+    carried, turned = ([u for u in found if (u.force_bw > CARRIES) == on] for on in (True, False))
     lines = []
     if carried:
         spans = ", ".join(
