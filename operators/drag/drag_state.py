@@ -164,7 +164,7 @@ class ValueDrag(_Drag):
         return self._go(self.step * round(value / self.step) if snap else value)
 
     def set(self, by: float) -> float:
-        """The same by a number, wherever the mouse is, which leads again as if nothing was typed."""
+        """The same by a number, wherever the mouse is, which leads again as if none was typed."""
         self._require_dragging()
         return self._go(self.start + by)
 

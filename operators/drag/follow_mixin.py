@@ -28,7 +28,7 @@ from ..solve.adapt import ask_for, followed_problem, unanalysed
 from ..solve.common import failed, required_armature
 from ..solve.live import clear_header, live, redraw_viewports, redraw_views
 from ..solve.session import Asked, session
-from ..solve.task import settle
+from ..solve.task import clear_status, closes
 from ..words.failure_text import Failure
 from ..words.report_text import deeper, higher
 from .mouse import BACK, CONFIRM, GIVEN, Press
@@ -115,7 +115,7 @@ class FollowedDrag(PolledOperator):
         self._fault = self._shown = ""
         self._typed = TypedNumber()
         self._task = self._follow(context)
-        self._area, self._window = present(context.area), context.window
+        self._area, self._window = present(context.area), present(context.window)
         manager = present(context.window_manager)
         self._timer = manager.event_timer_add(LOOK_EVERY, window=context.window)
         session().running.append(self)
@@ -188,14 +188,10 @@ class FollowedDrag(PolledOperator):
             running.remove(self)
             shared().drop()
             self._task.close()
-            manager = present(bpy.context.window_manager)
-            manager.event_timer_remove(self._timer)
+            present(bpy.context.window_manager).event_timer_remove(self._timer)
             clear_header(self._area)
             redraw_viewports()
-            if self._window in list(manager.windows):
-                session().status_bar.clear()
-            else:  # it is being closed, and until it is no status bar may be told anything
-                bpy.app.timers.register(settle, first_interval=0.0)
+            clear_status(window_closes=closes(self._window))
 
     @property
     def _confirming(self) -> str:

@@ -11,9 +11,11 @@ from ...bridge.properties.settings import settings_of
 from ..operator_types import OperatorResult, PolledOperator
 from ..solve.common import EDIT_MODE, chosen_armature, required_armature
 from ..solve.live import clear_header, redraw_viewports
+from ..solve.session import session
+from ..solve.task import clear_status, closes
 from .mouse import BACK, CONFIRM, GIVEN, Press
 
-KEYS = "Shift: finer · Ctrl: in steps of 5° · Esc: back"
+KEY_HINTS = "Shift: finer · Ctrl: in steps of 5° · Esc: back"
 NO_LIMIT = "There is no such joint limit or cone"
 BY_HANDLES = "Drag the limit's handles in a 3D viewport"
 
@@ -64,7 +66,8 @@ class LimitDrag(PolledOperator):
         if row is None or context.region_data is None or not self.take(context):
             return self.refuse(NO_LIMIT if row is None else BY_HANDLES)
         self._found = (row.met, row.status)
-        self._area = present(context.area)
+        self._area, self._window = present(context.area), present(context.window)
+        session().status_bar.say(KEY_HINTS)
         present(context.window_manager).modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -83,7 +86,7 @@ class LimitDrag(PolledOperator):
             return {"FINISHED"} if self.let_go() else {"CANCELLED"}
         if event.type == "MOUSEMOVE" and self._press.drags(context, event):
             self.pull(context, event)
-            self._area.header_text_set(f"{self.row.name}: {self.text()}   {KEYS}")
+            self._area.header_text_set(f"{self.row.name}: {self.text()}")
             redraw_viewports()
         return {"RUNNING_MODAL"}
 
@@ -98,6 +101,7 @@ class LimitDrag(PolledOperator):
     def _leave(self) -> None:
         clear_header(self._area)
         redraw_viewports()
+        clear_status(window_closes=closes(self._window))
 
     @property
     def row(self) -> HangtimeConstraint:

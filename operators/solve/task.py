@@ -177,13 +177,9 @@ class TaskOperator(ReadyOperator, FaultyOperator):
         return job.answer is not None
 
     def cancel(self, _context: bpy.types.Context) -> None:
-        """Blender calls this when it opens another file, closes the window or quits meanwhile.
-
-        While it closes a window no context may be overridden, or it ends with a segmentation fault
-        (4.3); what the task has to put back then waits.
-        """
-        windows = list(present(bpy.context.window_manager).windows)
-        self._leave(window_closes=self._window not in windows)
+        """Blender calls this when it opens another file, closes the window or quits meanwhile; what
+        the task has to put back waits where the window is being closed."""
+        self._leave(window_closes=closes(self._window))
 
     def leave(self) -> None:
         """Nothing of the work remains; a solve under way is dropped."""
@@ -200,7 +196,7 @@ class TaskOperator(ReadyOperator, FaultyOperator):
             bpy.app.timers.register(self._task.close, first_interval=0.0)
         else:
             self._task.close()
-            session().status_bar.clear()  # now: another file may have these workspaces, renumbered
+        clear_status(window_closes=window_closes)
         present(bpy.context.window_manager).event_timer_remove(self._timer)
         _redraw()
         bpy.app.timers.register(settle, first_interval=LOOK_AGAIN)
@@ -212,6 +208,21 @@ class TaskOperator(ReadyOperator, FaultyOperator):
             self._shown = text
             session().status_bar.say(STATUS.format(text))
             _redraw()
+
+
+def closes(window: bpy.types.Window) -> bool:
+    """Whether a window is being closed, while no context may be overridden, or Blender ends with a
+    segmentation fault (4.3)."""
+    return window not in list(present(bpy.context.window_manager).windows)
+
+
+def clear_status(*, window_closes: bool) -> None:
+    """Blender's own hints again in the status bar: once a window that is being closed is gone, else
+    at once, for another file may have these workspaces, renumbered."""
+    if window_closes:
+        bpy.app.timers.register(settle, first_interval=0.0)
+    else:
+        session().status_bar.clear()
 
 
 def settle() -> None:
