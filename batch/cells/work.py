@@ -17,14 +17,12 @@ from ...bridge.recipe.result import ResultOptions, require_return_after
 from ...bridge.rows.choices import FileFormat
 from ...operators.headless.clip import Clip, LoadedClip, load
 from ...operators.headless.doubts import doubts_about
-from ...operators.headless.explained import explained
 from ...operators.headless.outbox import Outbox
 from ...operators.headless.outputs import Outputs, require_exported, require_place
+from ...operators.headless.result_files import result_lines
 from ...operators.headless.stages import Stages
 from ...operators.words.doctor_text import diagnosis_text, finding_sentence
-from ...operators.words.headline import headline, nearness
-from ...operators.words.messages import together
-from ...operators.words.warning_text import warning_lines
+from ...operators.words.headline import nearness
 from ...solver.data.faults import BadRecipe, Fault, FitNeedsSupport
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
@@ -32,7 +30,7 @@ from ...solver.data.requests import Requests
 from ...solver.doctor.examination.diagnose import diagnose
 from ...solver.doctor.stretch import Span
 from ...solver.results.fit_quality import fit_quality
-from ...solver.results.unseen_support import hints_left, refuse_unseen
+from ...solver.results.unseen_support import refuse_unseen
 from ...solver.worker.pipeline import Subject, measure, no_fit, solve
 from ..planning.blender_need import needs_blender, require_blender
 from ..planning.clips import clip_sha256
@@ -112,11 +110,7 @@ def adapt_cell(
         )
     if Output.BVH in settings.outputs and result.fault is None:
         write_motion(result, loaded.origin, outbox)
-    left = loaded.subject.analysis.unseen
-    if result.fault is None:
-        left = tuple(hints_left(left, report, result.schedule, result.recording))
-    advice = [explained(each, None) for each in together(left)]
-    told = (*headline(report), *warning_lines(report), *advice)
+    told = result_lines(result, report, loaded.subject.analysis.unseen)
     return Done(told, figures(report), result.fault)
 
 

@@ -16,20 +16,16 @@ from ...bridge.recipe.result import ResultOptions
 from ...solver.data.faults import BadRecipe, Fault, NoSolution, OptionNotTaken
 from ...solver.data.problem import MotionProblem
 from ...solver.doctor.repairs import Repairs
-from ...solver.results.unseen_support import hints_left
 from ...solver.worker.pipeline import solve
 from ..words.analysis_text import analysis_text, starter_recipe
-from ..words.headline import headline
-from ..words.messages import together
 from ..words.report_text import gravity_lines
-from ..words.warning_text import warning_lines
 from .clip import Clip, LoadedClip, load
 from .doctor import examined, told, write_recipe_of
 from .doubts import doubts_about
 from .explained import CANCELLED, NO_SOLUTION, WRONG_INPUT, ended_by_signals, explained
 from .outbox import Outbox, not_writable
 from .outputs import Outputs, linked_files, require_apart, require_exported, require_place
-from .result_files import every_name
+from .result_files import every_name, result_lines
 from .stages import WIDTH, Stages
 
 
@@ -191,10 +187,8 @@ def adapt(options: argparse.Namespace) -> None:
         report = outputs.write(picture=not options.no_picture)
         files = outbox.deliver()
     total = f"{'Total':<{WIDTH}}{stages.total:6.1f} s"
-    told = loaded.subject.analysis.unseen
-    left = hints_left(told, report, result.schedule, result.recording)
-    advice = [explained(each, None) for each in together(left)]
-    print(total, *headline(report), *warning_lines(report), *advice, "Written:", sep="\n")
+    told = result_lines(result, report, loaded.subject.analysis.unseen)
+    print(total, *told, "Written:", sep="\n")
     for path in files:
         print(f"  {path}")
 

@@ -1,4 +1,5 @@
-"""Files of a result: their names, and those that need no Blender, trajectory and report."""
+"""Files of a result: their names, and those that need no Blender, trajectory and report; and the
+lines that a terminal shows of it."""
 
 from __future__ import annotations
 
@@ -6,11 +7,16 @@ import json
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
+from ...solver.data.faults import CarriedBy
 from ...solver.data.reports.report import Report, as_json
 from ...solver.results.npz_export import save
+from ...solver.results.unseen_support import hints_left
 from ...solver.worker.pipeline import AdaptationResult
+from ..words.headline import headline
+from ..words.messages import together
 from ..words.report_text import as_text
-from ..words.warning_text import warnings_of
+from ..words.warning_text import warning_lines, warnings_of
+from .explained import explained
 from .outbox import Outbox, not_writable
 
 EXPORTED = "adapted"  # file name without ending
@@ -54,3 +60,15 @@ def write_report(
         REPORTS[1],
         "\n".join([as_text(report), *last, *([""] if last else [])]),
     )
+
+
+def result_lines(
+    result: AdaptationResult, report: Report, told: Sequence[CarriedBy]
+) -> tuple[str, ...]:
+    """The headline, warnings, and what is still true of what the analysis of the clip told of who
+    carries the body: all of it where what was asked for was not found."""
+    left = told
+    if result.fault is None:
+        left = hints_left(told, report, result.schedule, result.recording)
+    advice = (explained(each, None) for each in together(left))
+    return *headline(report), *warning_lines(report), *advice
