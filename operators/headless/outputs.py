@@ -183,21 +183,26 @@ class Outputs:
             export_takes(performer, [adapted], path, export, pelvis)
 
     def _draw(self, *, picture: bool, film: bool) -> None:
-        from .annotate import marks_of, recorded_on
-        from .picture import both_rows, draw, draw_moving
+        from .picture import draw, draw_moving
 
-        adaptation, problem = self.result.adaptation, self.result.subject.problem
-
-        def rows() -> tuple[SheetRow, SheetRow]:
-            marks = recorded_on(adaptation, problem.scene), marks_of(adaptation, problem)
-            return both_rows(adaptation, self.clip.problem, *marks)
-
+        if not (picture or film):
+            return
+        adaptation, rows = self.result.adaptation, self._rows()
         if picture:
             with self.stages.stage("Drawing the picture"), quiet():
-                draw(adaptation, rows(), self.outbox.path(PICTURE))
+                draw(adaptation, rows, self.outbox.path(PICTURE))
         if film:
             with self.stages.stage("Drawing the film"), quiet():
-                draw_moving(adaptation, rows(), self.outbox.path(FILM))
+                draw_moving(adaptation, rows, self.outbox.path(FILM))
+
+    def _rows(self) -> tuple[SheetRow, SheetRow]:
+        """Of the picture and the film."""
+        from .annotate import marks_of, recorded_on
+        from .picture import both_rows
+
+        adaptation, problem = self.result.adaptation, self.result.subject.problem
+        marks = recorded_on(adaptation, problem.scene), marks_of(adaptation, problem)
+        return both_rows(adaptation, self.clip.problem, *marks)
 
     def write_failure(self) -> None:
         """The report, and the best motion that was found."""
