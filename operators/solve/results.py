@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...bridge.accessors import current_action, present, source_of
+from ...bridge.accessors import armature_data, current_action, present, source_of
 from ...bridge.action_slots import lost_slot
 from ...bridge.armature.actions import recorded_action, show
 from ...bridge.armature.played import why_no_action
@@ -242,7 +242,7 @@ class DiscardOperator(_OfSettledResult, bpy.types.Operator):
         if settings.source == result:
             settings.source = None
         if performer != armature:
-            bpy.data.objects.remove(performer)
+            _remove_performer(context, performer, armature)
         for each in bpy.data.objects:  # a linked copy may perform it, too
             if current_action(each) == result:
                 show(each, recorded)
@@ -256,6 +256,20 @@ class DiscardOperator(_OfSettledResult, bpy.types.Operator):
         settings.status = ""
         self.report({"INFO"}, f"Discarded {name}")
         return {"FINISHED"}
+
+
+def _remove_performer(
+    context: bpy.types.Context, performer: bpy.types.Object, armature: bpy.types.Object
+) -> None:
+    """Remove an armature that was made to perform a result; where it was active, the one that the
+    result was made for is."""
+    objects, bones = present(context.view_layer).objects, armature_data(performer)
+    was_active = objects.active == performer
+    bpy.data.objects.remove(performer)
+    if bones.users == 0:
+        bpy.data.armatures.remove(bones)
+    if was_active and armature.name in objects:
+        objects.active = armature
 
 
 class ShowReportOperator(_OfResult, bpy.types.Operator):

@@ -6,7 +6,7 @@ from math import isclose
 
 import bpy
 
-from ...bridge.accessors import current_scene, present, root_of, source_of
+from ...bridge.accessors import current_action, current_scene, present, root_of, source_of
 from ...bridge.armature.actions import read_recorded_incrementally, recorded_action
 from ...bridge.armature.incremental import Incremental, complete
 from ...bridge.armature.poses import frames_per_second, require_unstretched
@@ -316,8 +316,10 @@ def _write_other(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> I
     other, track, turns = build_reproportioned(recording, answer.track)
     other.name = f"{armature.name} changed"
     source = present(recorded_action(armature))
+    scaffold = present(current_action(other))  # poses that only the result is written from
     action = write_action(other, track, name=free_name(root_of(source).name, "adapted"))
     derive(action, source, armature)
+    bpy.data.actions.remove(scaffold)
     settings_of(armature).adapted = action
     keep(action, answer.traces, armature.matrix_world)
     options = asked.result

@@ -290,7 +290,7 @@ def test_longer_legs_perform_and_are_exported_on_their_own_armature(
     analysed: bpy.types.Object, tmp_path: Path
 ) -> None:
     assert bpy.ops.hangtime.adapt() == {"FINISHED"}
-    first = analysed.hangtime.adapted
+    first, actions, bones = analysed.hangtime.adapted, list(bpy.data.actions), analysed.data
     assert bpy.ops.hangtime.add_body_change(kind="LIMB") == {"FINISHED"}
     row = analysed.hangtime.body_changes[-1]
     row.bones.clear()
@@ -303,6 +303,7 @@ def test_longer_legs_perform_and_are_exported_on_their_own_armature(
     other = result.hangtime.performer
     assert other != analysed
     assert current_action(other) == result
+    assert set(bpy.data.actions) == {*actions, result}
     assert f"rest of the take is left out: {other.name} has other limbs" in analysed.hangtime.status
     assert not bpy.ops.hangtime.compare.poll()
     assert bpy.ops.hangtime.accept() == {"FINISHED"}
@@ -311,6 +312,9 @@ def test_longer_legs_perform_and_are_exported_on_their_own_armature(
     assert other.name.encode() in fbx.read_bytes()
     assert bpy.ops.hangtime.discard() == {"FINISHED"}
     assert "changed" not in "".join(o.name for o in bpy.data.objects)
+    assert list(bpy.data.actions) == actions
+    assert list(bpy.data.armatures) == [bones]
+    assert bpy.context.view_layer.objects.active == analysed
     assert result_of(analysed) == first
 
 
