@@ -50,15 +50,26 @@ def read_recorded_incrementally(
     beyond: float = 0.0,
 ) -> Incremental[Recording]:
     """Read the recording, a few frames a slice."""
-    if armature is None or current_action(armature) is None:
-        whole_frames(armature, first, last)
+    frames = recorded_frames(armature, first, last, beyond)
     assert armature is not None
     showing = showing_recorded(armature)
-    with showing():
-        frames = whole_frames(armature, first, last, beyond)
     poses = yield from sample_incrementally(armature, frames, showing)
     with showing():
         return recording_of(armature, frames, poses)
+
+
+def recorded_frames(
+    armature: bpy.types.Object | None,
+    first: float | None,
+    last: float | None,
+    beyond: float = 0.0,
+) -> FloatArray:
+    """Whole frames of the recording (T,), whichever of its actions is shown. Arguments and faults
+    are those of `whole_frames`."""
+    if armature is None or current_action(armature) is None:
+        return whole_frames(armature, first, last)  # raises why
+    with showing_recorded(armature)():
+        return whole_frames(armature, first, last, beyond)
 
 
 def showing_recorded(armature: bpy.types.Object) -> Callable[[], AbstractContextManager[None]]:

@@ -52,8 +52,8 @@ def why_no_action(owner: bpy.types.Object) -> Fault:
     data, strips = owner.animation_data, visible_strips(owner)
     unseen = [strip for track in data.nla_tracks for strip in track.strips] if data else []
     if data is None or data.action is not None or not unseen:
-        leaders = _leaders(owner)
-        return PosedByOthers(owner.name, leaders) if leaders else NoAction(owner.name)
+        followed = leaders(owner)
+        return PosedByOthers(owner.name, followed) if followed else NoAction(owner.name)
     if not data.use_nla:
         return StripsOff(owner.name, tuple(strip.name for strip in unseen))
     silent = MUTED if len(unseen) == 1 else ALL_MUTED
@@ -63,7 +63,7 @@ def why_no_action(owner: bpy.types.Object) -> Fault:
     return UnreadStrips(owner.name, tuple(strip.name for strip in strips or unseen), why)
 
 
-def _leaders(owner: bpy.types.Object) -> tuple[str, ...]:
+def leaders(owner: bpy.types.Object) -> tuple[str, ...]:
     """Other armatures after which constraints pose an armature's bones, as in a retarget."""
     each = (c for bone in pose_of(owner).bones for c in bone.constraints if not c.mute)
     things = (getattr(constraint, "target", None) for constraint in each)

@@ -14,7 +14,7 @@ from ..libraries import lost_character, lost_file
 from ..properties.of_actions.known_contacts import known_at
 from . import fcurves
 from .channels import proper
-from .played import require_unblended, require_unstarred, strip_time, why_no_action
+from .played import leaders, require_unblended, require_unstarred, strip_time, why_no_action
 from .poses import Poses, followed_bone, frames_per_second, metres_per_unit, sample
 
 _SAME_SCALE = 1e-4  # relative; float32 and chains of parents leave about 1e-6
@@ -30,9 +30,10 @@ def read_recording(
 ) -> Recording:
     """Sample the evaluated pose of every bone at every whole scene frame in [first, last].
 
-    The range defaults to the action's. beyond: s, on both sides of a stated range that are read too
-    as far as the action goes. World space, m, s; the rotations carry no scale. The scene is left as
-    it was. The recording is called what the action is called.
+    The range defaults to the action's, and one that reaches beyond that ends with it, for nothing
+    moves there. beyond: s, on both sides of a stated range that are read too as far as the action
+    goes. World space, m, s; the rotations carry no scale. The scene is left as it was. The
+    recording is called what the action is called.
 
     Raises NoArmature, LibraryMissing, NoBones, NoAction (also for an action without curves or
     without a slot for this armature), UnreadStrips, StripsOff, BlendedAction, NonFiniteKey,
@@ -62,12 +63,22 @@ def whole_frames(
     time = strip_time(armature, action)
     if time is not None:
         spans = np.array([time.clipped(spans.min(), spans.max())])
-    start = np.ceil((spans.min() if first is None else first) - _EPSILON)
-    end = max(start, np.floor((spans.max() if last is None else last) + _EPSILON))
+    there = float(np.ceil(spans.min() - _EPSILON)), float(np.floor(spans.max() + _EPSILON))
+    start = there[0] if first is None else float(np.ceil(first - _EPSILON))
+    end = max(start, there[1] if last is None else float(np.floor(last + _EPSILON)))
+    if not _goes_on(armature, curves) and start <= there[1] and there[0] <= end:
+        start, end = max(start, there[0]), min(end, there[1])
     reach = np.floor(beyond * frames_per_second(current_scene()))
-    before = start if first is None else max(start - reach, np.ceil(spans.min() - _EPSILON))
-    after = end if last is None else min(end + reach, np.floor(spans.max() + _EPSILON))
+    before = start if first is None else max(start - reach, there[0])
+    after = end if last is None else min(end + reach, there[1])
     return np.arange(min(before, start), max(after, end) + 1.0) + 0.0  # no frame is called -0
+
+
+def _goes_on(armature: bpy.types.Object, curves: list[bpy.types.FCurve]) -> bool:
+    """Whether an armature may move beyond its keys: by cycles, or after another armature."""
+    modifiers = (each for curve in curves for each in curve.modifiers)
+    cyclic = any(each.type == "CYCLES" and not each.mute for each in modifiers)
+    return cyclic or bool(leaders(armature))
 
 
 def last_keyed(armature: bpy.types.Object) -> float:

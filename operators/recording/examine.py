@@ -7,7 +7,8 @@ import bpy
 from ...bridge.accessors import present, shown_range
 from ...bridge.armature.actions import recorded_action
 from ...bridge.constraints.bone_mapping import chosen_parts, find_parts, missing_parts
-from ...bridge.properties.settings import scene_settings, settings_of
+from ...bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
+from ...bridge.repairs.analysis_key import span_of, wanted_range
 from ...bridge.repairs.renamed_bones import require_keyed
 from ...bridge.repairs.stored import (
     applied,
@@ -20,6 +21,7 @@ from ...bridge.repairs.stored import (
 from ...bridge.worker_client import shared
 from ...solver.data.faults import MissingPart
 from ...solver.data.problem import MotionProblem
+from ...solver.data.recording import Recording
 from ...solver.worker.protocol import Examined, RequestKind
 from ..names import OperatorId
 from ..solve.adapt import read_wanted
@@ -30,6 +32,7 @@ from ..solve.session import session
 from ..solve.solving import SolveState, Solving
 from ..solve.task import Task, TaskOperator, answered
 from ..words.doctor_text import HEALTHY
+from ..words.doubt_text import frame_doubts
 
 FOUND = "Found {} in the recording; the panel Recording tells what, and the remedies"
 READS = 0.5  # of an examination, the share of playing the take in Blender
@@ -52,6 +55,7 @@ class ExamineOperator(TaskOperator, bpy.types.Operator):
         armature = required_armature(context)
         settings = settings_of(armature)
         recording = yield from read_wanted(armature)
+        self._tell_of_range(settings, recording)
         dead = require_keyed(armature)
         find_parts(armature)
         yield None
@@ -92,6 +96,10 @@ class ExamineOperator(TaskOperator, bpy.types.Operator):
         if dead is not None:
             self.report({"WARNING"}, said(dead))
         return FOUND.format(faults(len(wrong))) if wrong else HEALTHY
+
+    def _tell_of_range(self, settings: HangtimeSettings, recording: Recording) -> None:
+        for doubt in frame_doubts(wanted_range(settings), span_of(settings, recording)):
+            self.report({"WARNING"}, doubt)
 
 
 def faults(count: int) -> str:

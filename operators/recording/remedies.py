@@ -2,8 +2,8 @@
 
 import bpy
 
-from ...bridge.accessors import current_scene
-from ...bridge.armature.actions import recorded_action
+from ...bridge.accessors import current_scene, present, shown_range
+from ...bridge.armature.actions import recorded_action, recorded_frames
 from ...bridge.armature.poses import set_frame_rate
 from ...bridge.files.object_scale import scale_object
 from ...bridge.properties.settings import settings_of
@@ -13,12 +13,14 @@ from ...bridge.repairs.renamed_bones import (
     renamed_bones,
     takes_to_rename,
 )
+from ...solver.analysis.take import require_inside
 from ...solver.data.faults import Fault
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import ReadyOperator, required_armature, said
 from ..solve.live import redraw
 from ..solve.session import session
+from ..words.doubt_text import frame_doubts
 
 LINKED = "“{}” is linked: rename its keys in its own file, or give the bones their old names"
 SHARED = (
@@ -98,10 +100,15 @@ class TrimOperator(MendingOperator, bpy.types.Operator):
     def mend(self, armature: bpy.types.Object) -> OperatorResult:
         if self.last <= self.first:
             return self.refuse(f"Frames {self.first} to {self.last} are no range")
+        asked = float(self.first), float(self.last)
+        first, last = recorded_frames(armature, *asked)[[0, -1]].tolist()
+        whole = shown_range(armature, present(recorded_action(armature)))
+        require_inside((first, last), armature.name, whole)
         settings = settings_of(armature)
-        settings.first_frame, settings.last_frame = self.first, self.last
+        settings.first_frame, settings.last_frame = round(first), round(last)
         settings.use_range = True
-        return self.done(f"The range is frames {self.first} to {self.last} now")
+        told = f"The range is frames {first:g} to {last:g} now"
+        return self.done(". ".join([told, *frame_doubts(asked, (first, last))]))
 
 
 class RenameKeysOperator(MendingOperator, bpy.types.Operator):

@@ -22,7 +22,7 @@ from ...bridge.properties.settings import (
 )
 from ...bridge.properties.stances import active_contact
 from ...bridge.repairs.analysed_state import AnalysedState
-from ...bridge.repairs.analysis_key import analysis_is_of, span_of
+from ...bridge.repairs.analysis_key import analysis_is_of, span_of, wanted_range
 from ...bridge.repairs.renamed_bones import require_keyed
 from ...bridge.worker_client import shared
 from ...bridge.worker_requests import PendingRequest
@@ -55,6 +55,7 @@ from ..operator_types import OperatorResult
 from ..words.doctor_text import finding_sentence
 from ..words.headline import accepted_lines
 from ..words.messages import together
+from ..words.range_text import range_words
 from ..words.report_text import apex_words
 from ..words.shape_text import shapes_told
 from .adapt import Adapting, ask_for, followed_problem, read_wanted, require_writable
@@ -187,7 +188,7 @@ def analysis(
     # Now, as it may be moved while it is analysed.
     state, stood = AnalysedState.of(armature), armature.matrix_world.copy()
     recorded = shown_range(armature, present(recorded_action(armature)))
-    span = span_of(settings, recording)
+    wanted, span = wanted_range(settings), span_of(settings, recording)
     _require_inside(armature, span, recorded)
     dead = require_keyed(armature)
     find_parts(armature)
@@ -228,7 +229,8 @@ def analysis(
     settings.shapes_told = shapes_told(bound, answer.bones, answer.fleshed)
     scene_settings(context.scene).armature = armature
     found = f"Found {contacts} contacts and {flights or 'no'} flight{'s' if flights > 1 else ''}"
-    found = f"{found}{bind}{_snapped(settings, span)}{_noise(recording, problem)}{_unseen(answer)}"
+    ranged = range_words(wanted, span, span_of(settings, recording))
+    found = f"{found}{bind}{ranged}{_noise(recording, problem)}{_unseen(answer)}"
     if dead is not None:
         found += f". {said(dead).rstrip('.')}"
     if answer.cycle is None:
@@ -312,17 +314,6 @@ def _require_inside(
 def _take_cycle(settings: HangtimeSettings, cycle: Cycle) -> None:
     settings.first_frame, settings.last_frame = map(round, cycle.frames)
     settings.use_range = True
-
-
-def _snapped(settings: HangtimeSettings, asked: tuple[float, float]) -> str:
-    """Words on a frame range that was moved to a whole cycle."""
-    first, last = settings.first_frame, settings.last_frame
-    if not settings.use_range or (first, last) == asked:
-        return ""
-    return (
-        f". A whole cycle is frames {first} to {last}: the range begins {first - asked[0]:+g} and "
-        f"ends {last - asked[1]:+g} frames from where it did"
-    )
 
 
 def _is_carried(answer: Analysed) -> bool:

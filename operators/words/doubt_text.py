@@ -48,10 +48,25 @@ def doubts_of(
     """
     masses = dict.fromkeys((problem.mass, problem.requests.body.mass or problem.mass))
     return [
-        *_of_frames(problem, frames),
+        *frame_doubts(problem.frames or (None, None), frames),
         *(line for mass in masses for line in _of_build(mass, problem.height or height)),
         *request_doubts(problem, phases, leaps),
     ]
+
+
+def frame_doubts(
+    asked: tuple[float, float] | tuple[None, None], there: Sequence[float] | FloatArray
+) -> list[str]:
+    """A line for each end of a range of frames that is beyond those (T,) that a recording has."""
+    first, last = asked
+    told: list[str] = []
+    if first is None or last is None or not len(there):
+        return told
+    if isfinite(first) and first < there[0] - A_FRAME:
+        told.append(f"Frame {first:.9g} was asked for, but the recording begins at {there[0]:g}")
+    if isfinite(last) and last > there[-1] + A_FRAME:
+        told.append(f"Frame {last:.9g} was asked for, but the recording ends at {there[-1]:g}")
+    return told
 
 
 def distance_doubts(problem: MotionProblem, heads: FloatArray) -> list[str]:
@@ -186,16 +201,6 @@ def _of_low(problem: MotionProblem, heads: FloatArray) -> Iterator[str]:
         below = -np.inf if point.place is None else float(heads[..., 2].min()) - point.place[2]
         if below > MOST_BELOW and not point.environment:
             yield f"“{point.name}” is {length(below)} below all that was recorded, in the ground"
-
-
-def _of_frames(problem: MotionProblem, there: FloatArray) -> Iterator[str]:
-    if problem.frames is None or not len(there):
-        return
-    first, last = problem.frames
-    if isfinite(first) and first < there[0] - A_FRAME:
-        yield f"Frame {first:g} was asked for, but the recording begins at {there[0]:g}"
-    if isfinite(last) and last > there[-1] + A_FRAME:
-        yield f"Frame {last:g} was asked for, but the recording ends at {there[-1]:g}"
 
 
 def _of_build(mass: float, height: float) -> Iterator[str]:

@@ -7,6 +7,7 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import current_action
+from hangtime.bridge.armature.fcurves import curves_of
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.traces_store import kept
 from hangtime.bridge.constraints.motion_problem import problem_of
@@ -117,3 +118,43 @@ def test_a_range_that_cuts_a_flight_is_told(
     said = capfd.readouterr().out
     assert told in said
     assert ("in the air" in said) == bool(told)
+
+
+def test_a_range_beyond_the_take_ends_with_it_and_that_is_told(
+    jump: bpy.types.Object, capfd: pytest.CaptureFixture[str]
+) -> None:
+    first, last = current_action(jump).frame_range
+    jump.hangtime.first_frame, jump.hangtime.last_frame = -400, 1_000_000
+    for operator, told in ((bpy.ops.hangtime.analyze, "Info"), (bpy.ops.hangtime.examine, "War")):
+        capfd.readouterr()
+        assert operator() == {"FINISHED"}
+        said = capfd.readouterr().out
+        assert told in said
+        assert f"Frame -400 was asked for, but the recording begins at {first:g}" in said
+        assert f"Frame 1000000 was asked for, but the recording ends at {last:g}" in said
+        assert "cycle" not in said
+    rows = jump.hangtime.contacts
+    assert min(row.start_frame for row in rows) == first
+    assert max(row.end_frame for row in rows) == last
+
+
+def test_a_take_that_repeats_is_read_beyond_its_keys(jump: bpy.types.Object) -> None:
+    first, last = current_action(jump).frame_range
+    for curve in curves_of(jump):
+        curve.modifiers.new("CYCLES")
+    jump.hangtime.first_frame, jump.hangtime.last_frame = int(first), int(last) + 50
+    assert complete(read_wanted(jump)).frames[-1] == last + 50
+
+
+def test_a_trim_keeps_to_the_take(
+    jump: bpy.types.Object, capfd: pytest.CaptureFixture[str]
+) -> None:
+    settings, last = jump.hangtime, int(current_action(jump).frame_range[1])
+    before = settings.first_frame, settings.last_frame
+    for begin in (last, last + 64):
+        with pytest.raises(RuntimeError, match=r"has no keys; they lie from frame 1 to"):
+            bpy.ops.hangtime.trim(first=begin, last=last + 164)
+    assert (settings.first_frame, settings.last_frame) == before
+    assert bpy.ops.hangtime.trim(first=110, last=1500) == {"FINISHED"}
+    assert (settings.first_frame, settings.last_frame) == (110, last)
+    assert f"Frame 1500 was asked for, but the recording ends at {last}" in capfd.readouterr().out
