@@ -38,13 +38,25 @@ def _remedies(fault: Fault) -> list[str]:
 
 @contextmanager
 def ended_by_signals() -> Iterator[None]:
-    """Whoever ends the process politely has it clean up, as Ctrl-C does: KeyboardInterrupt."""
+    """Whoever ends the process politely, by Ctrl-C or otherwise, has it clean up:
+    KeyboardInterrupt, also out of Blender's operators, which make an error of their own of it."""
+    came = False
 
     def interrupt(_number: int, _frame: object) -> None:
+        nonlocal came
+        came = True
         raise KeyboardInterrupt
 
-    before = signal.signal(signal.SIGTERM, interrupt)
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    for number, handler in before.items():
+        if handler is not signal.SIG_IGN:  # as of what a shell runs in the background
+            signal.signal(number, interrupt)
     try:
         yield
+    except Exception:
+        if came:
+            raise KeyboardInterrupt from None
+        raise
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)

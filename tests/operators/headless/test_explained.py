@@ -1,0 +1,45 @@
+"""What ends a command of a terminal."""
+
+from __future__ import annotations
+
+import signal
+from contextlib import suppress
+
+import pytest
+
+from hangtime.operators.headless.explained import ended_by_signals
+
+pytestmark = pytest.mark.usefixtures("_handlers_stay")
+
+
+@pytest.fixture
+def _handlers_stay() -> object:
+    signals = (signal.SIGINT, signal.SIGTERM)
+    before = [signal.getsignal(number) for number in signals]
+    yield
+    assert [signal.getsignal(number) for number in signals] == before
+
+
+def blender_operator(number: int | None) -> None:
+    """Raises as Blender's operators do, whatever goes wrong in them."""
+    with suppress(KeyboardInterrupt):
+        if number is not None:
+            signal.raise_signal(number)
+    raise RuntimeError("Error: Python: Traceback")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_interrupts(number: int) -> None:
+    with pytest.raises(KeyboardInterrupt), ended_by_signals():
+        signal.raise_signal(number)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_interrupts_an_operator_of_blender_too(number: int) -> None:
+    with pytest.raises(KeyboardInterrupt), ended_by_signals():
+        blender_operator(number)
+
+
+def test_what_fails_by_itself_is_no_interrupt() -> None:
+    with pytest.raises(RuntimeError), ended_by_signals():
+        blender_operator(None)
