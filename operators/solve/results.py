@@ -6,7 +6,7 @@ from ...bridge.accessors import armature_data, current_action, present, source_o
 from ...bridge.action_slots import lost_slot
 from ...bridge.armature.actions import recorded_action, show
 from ...bridge.armature.played import why_no_action
-from ...bridge.armature.strips import remove_strips
+from ...bridge.armature.strips import remove_strips, strips_of
 from ...bridge.fake_users import unguard
 from ...bridge.libraries import lost_file
 from ...bridge.properties.settings import action_settings, settings_of
@@ -32,6 +32,7 @@ BESIDE = "The armature {} performs the result beside the recording; there is not
 NOT_SHOWN = "{} is shown; show the result that is to {}"
 NOT_COMPARED = "Nothing that {} was made from is there to compare it with"
 BUILT_ON = "{} was made from this result; discard that one first"
+TWEAKED_BY = "{} plays this result, too, and is in tweak mode; leave that first (Tab in the NLA)"
 REPORT = "{} report"
 SURE = "Accept this result?"
 ACCEPTED = "The result is accepted already"
@@ -232,7 +233,11 @@ class DiscardOperator(_OfSettledResult, bpy.types.Operator):
         why = why or _not_shown(context, "go")
         if why is not None:
             return why
-        built = results_from(required_result(context))
+        result = required_result(context)
+        for each in bpy.data.objects:  # Blender would not let it perform another action
+            if tweaked(each) and (current_action(each) == result or strips_of(each, result)):
+                return TWEAKED_BY.format(each.name)
+        built = results_from(result)
         return BUILT_ON.format(built[0].name) if built else None
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:

@@ -120,6 +120,26 @@ def test_while_a_strip_is_tweaked_what_assigns_actions_waits(armature: bpy.types
         assert {each.poll() for each in waiting} == {not tweaking}
 
 
+def test_a_result_that_another_tweaks_is_not_discarded(armature: bpy.types.Object) -> None:
+    bpy.context.scene.hangtime.armature = armature
+    result = lifted(armature, 0.1)
+    other = armature.copy()
+    bpy.context.scene.collection.objects.link(other)
+    data = other.animation_data
+    data.nla_tracks.active = data.nla_tracks[-1]
+    for track in data.nla_tracks:
+        for strip in track.strips:
+            track.select = strip.select = track == data.nla_tracks[-1]
+    data.use_tweak_mode = True
+    assert data.use_tweak_mode
+    with pytest.raises(RuntimeError, match=f"{other.name} plays this result, too"):
+        bpy.ops.hangtime.discard()
+    assert result in list(bpy.data.actions)
+    assert current_action(armature) == result
+    data.use_tweak_mode = False
+    assert bpy.ops.hangtime.discard() == {"FINISHED"}
+
+
 WHOLE = np.arange(1.0, 25.0)
 
 
