@@ -34,6 +34,7 @@ NOT_COMPARED = "Nothing that {} was made from is there to compare it with"
 BUILT_ON = "{} was made from this result; discard that one first"
 TWEAKED_BY = "{} plays this result, too, and is in tweak mode; leave that first (Tab in the NLA)"
 REPORT = "{} report"
+_LONGEST = 63 - len(REPORT.format(""))  # bytes of a name of which the rest is ours
 SURE = "Accept this result?"
 ACCEPTED = "The result is accepted already"
 
@@ -285,26 +286,32 @@ class ShowReportOperator(_OfResult, bpy.types.Operator):
     )
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
-        result = required_result(context)
-        name = REPORT.format(result.name)
-        text = bpy.data.texts.get(name) or bpy.data.texts.new(name)
-        text.from_string(action_settings(result).report)
-        text.current_line_index = 0  # else it is shown from its end
-        self.report({"INFO"}, f"The report is the text {name}")
+        self._write(required_result(context))
         return {"FINISHED"}
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         """In a window of its own, whose letters are of one width, as the columns need them."""
-        self.execute(context)
+        text = self._write(required_result(context))
         bpy.ops.wm.window_new()
         area = present(context.window_manager).windows[-1].screen.areas[0]
         area.type = "TEXT_EDITOR"
         editor = area.spaces.active
         assert isinstance(editor, bpy.types.SpaceTextEditor)
-        editor.text = bpy.data.texts[REPORT.format(required_result(context).name)]
+        editor.text = text
         editor.top = 0
         editor.show_line_numbers = editor.show_syntax_highlight = False
         return {"FINISHED"}
+
+    def _write(self, result: bpy.types.Action) -> bpy.types.Text:
+        """The result's text, anew; of a long name the beginning goes, as Blender would cut off by
+        what results of one take are told apart."""
+        called = result.name.encode()[-_LONGEST:].decode(errors="ignore")
+        name = REPORT.format(called)
+        text = bpy.data.texts.get(name) or bpy.data.texts.new(name)
+        text.from_string(action_settings(result).report)
+        text.current_line_index = 0  # else it is shown from its end
+        self.report({"INFO"}, f"The report is the text {name}")
+        return text
 
 
 class CancelOperator(PolledOperator, bpy.types.Operator):

@@ -233,6 +233,17 @@ def test_the_report_becomes_a_text(adapted: bpy.types.Object) -> None:
     assert "the pelvis rises to" in text
 
 
+def test_the_report_of_a_long_name_is_one_text(adapted: bpy.types.Object) -> None:
+    for name in (f"{'ü' * 26} adapted", f"{'ü' * 26} adapted 2"):
+        adapted.hangtime.adapted.name = name
+        for _ in range(2):
+            assert bpy.ops.hangtime.show_report() == {"FINISHED"}
+    assert sorted(text.name[-18:] for text in bpy.data.texts) == [
+        "ü adapted 2 report"[-18:],
+        "üüü adapted report"[-18:],
+    ]
+
+
 @pytest.mark.slow
 def test_the_best_of_a_solve_that_failed_can_be_used(analysed: bpy.types.Object) -> None:
     stance = analysed.hangtime.stances["ground 2"]
