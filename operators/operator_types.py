@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import sys
+from types import FrameType
 from typing import TYPE_CHECKING, Any, Literal
 
 import bpy
@@ -17,6 +19,9 @@ NOT_OURS = "Hangtime has no operator “{}”"
 FROM_BLEND: set[Any] = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) else set()
 MOST_BYTES = 200  # of a precondition's sentence that Blender passes on to scripts
 TAIL_BYTES = 120  # of these for its end, which says what to do
+
+# What Blender puts before an operator's sentence, where it refuses and where it cannot begin.
+_BEFORE_SENTENCE = re.compile(r"^(Error: |Operator bpy\.ops\.\S+\.poll\(\) )")
 
 if TYPE_CHECKING:
     OperatorMixin = bpy.types.Operator
@@ -40,16 +45,27 @@ class PolledOperator(OperatorMixin):
         return why is None
 
     def refuse(self, why: str, level: Literal["WARNING", "ERROR"] = "ERROR") -> OperatorResult:
-        """Reports why nothing is done."""
-        self.report({level}, why)
+        """Reports why nothing is done. A script gets an error for a warning, too, as it would take
+        no notice of that; a person reads it in the status bar, without a pop-up in the way."""
+        self.report({"ERROR" if self._by_script() else level}, why)
         return {"CANCELLED"}
 
+    def _by_script(self) -> bool:
+        """Whether code runs this: beneath what Blender calls for a click are no other frames."""
+        frame: FrameType = sys._getframe()
+        while frame.f_back is not None:
+            frame = frame.f_back
+        return frame.f_locals.get("self") is not self
+
     def go_on_with(self, name: str, **values: object) -> OperatorResult:
-        """Invokes another of Hangtime's operators, by its bl_idname."""
+        """Invokes another of Hangtime's operators, by its bl_idname; refuses where that does."""
         if name not in list(OperatorId):
             return self.refuse(NOT_OURS.format(name))
         category, _, own = name.partition(".")
-        getattr(getattr(bpy.ops, category), own)("INVOKE_DEFAULT", **values)
+        try:
+            getattr(getattr(bpy.ops, category), own)("INVOKE_DEFAULT", **values)
+        except RuntimeError as error:
+            return self.refuse(_BEFORE_SENTENCE.sub("", str(error)).strip())
         return {"FINISHED"}
 
 

@@ -33,6 +33,7 @@ DESCRIPTIONS = {
 _BONED = (RowList.CONSTRAINTS, RowList.BODY_CHANGES)  # lists whose rows are about bones
 BonedRow = HangtimeConstraint | HangtimeBodyChange
 KIND_ITEMS = [(kind.name, kind.value, DESCRIPTIONS[kind]) for kind in BodyKind]
+NO_SUCH_BONE = "“{}” has {} fields of bones, counted from 0, and none with the number {}"
 
 
 class AddBodyChangeOperator(AddingOperator, bpy.types.Operator):
@@ -75,10 +76,11 @@ class _BonesOperator(AddingOperator):
         if index < of.linked(armature):
             return self.refuse(of.nothing_chosen if index < 0 else FROM_LIBRARY, "WARNING")
         row = of.rows(settings_of(armature))[index]
-        return {"FINISHED"} if self.change(row, armature) else {"CANCELLED"}
+        why = self.change(row, armature)
+        return {"FINISHED"} if why is None else self.refuse(why, "WARNING")
 
-    def change(self, row: BonedRow, armature: bpy.types.Object) -> bool:
-        """Changes the bones of a row; whether it can."""
+    def change(self, row: BonedRow, armature: bpy.types.Object) -> str | None:
+        """Changes the bones of a row; why not, None where done."""
         raise NotImplementedError
 
 
@@ -87,10 +89,10 @@ class AssignBonesOperator(_BonesOperator, SelectedBonesOperator, bpy.types.Opera
     bl_label = "Assign Selected Bones"
     bl_description = "Let the chosen row be about the bones that are selected in pose mode"
 
-    def change(self, row: BonedRow, armature: bpy.types.Object) -> bool:
+    def change(self, row: BonedRow, armature: bpy.types.Object) -> str | None:
         bones = chosen_bones(armature)
         set_bones(row, bones[:1] if row.kind in _OF_ONE_BONE else bones)
-        return True
+        return None
 
 
 class AddBoneOperator(_BonesOperator, bpy.types.Operator):
@@ -98,9 +100,9 @@ class AddBoneOperator(_BonesOperator, bpy.types.Operator):
     bl_label = "Add Bone"
     bl_description = "Add a field to choose one more bone in"
 
-    def change(self, row: BonedRow, _armature: bpy.types.Object) -> bool:
+    def change(self, row: BonedRow, _armature: bpy.types.Object) -> str | None:
         row.bones.add()
-        return True
+        return None
 
 
 class RemoveBoneOperator(_BonesOperator, bpy.types.Operator):
@@ -110,8 +112,8 @@ class RemoveBoneOperator(_BonesOperator, bpy.types.Operator):
 
     index: bpy.props.IntProperty(name="Index", min=0)
 
-    def change(self, row: BonedRow, _armature: bpy.types.Object) -> bool:
+    def change(self, row: BonedRow, _armature: bpy.types.Object) -> str | None:
         if self.index >= len(row.bones):
-            return False
+            return NO_SUCH_BONE.format(row.name, len(row.bones), self.index)
         row.bones.remove(self.index)
-        return True
+        return None

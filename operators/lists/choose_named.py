@@ -75,6 +75,12 @@ class TickNamedOperator(ReadyOperator, bpy.types.Operator):
         if row is None:
             return self.refuse(NOT_LISTED.format(self.name), "WARNING")
         row.used = not row.used
+        done: OperatorResult = {"FINISHED"}
+        if self.then:
+            done = self.go_on_with(self.then)
+        if "CANCELLED" in done:
+            row.used = not row.used
+            return done
         choose_named(settings, self.name)
         redraw("VIEW_3D")
-        return self.go_on_with(self.then) if self.then else {"FINISHED"}
+        return done

@@ -123,9 +123,7 @@ class SetRangeOperator(RowOperator, bpy.types.Operator):
             hold_during(row, scene.frame_preview_start, scene.frame_preview_end)
         else:
             hold_during(row, scene.frame_current_final, scene.frame_current_final)
-        if why is not None:
-            self.report({"WARNING"}, why)
-        return {"FINISHED"} if why is None else {"CANCELLED"}
+        return {"FINISHED"} if why is None else self.refuse(why, "WARNING")
 
     def _set_phase(self, context: bpy.types.Context, row: HangtimeConstraint) -> str | None:
         """Why not; None where done."""

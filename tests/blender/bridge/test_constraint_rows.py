@@ -276,6 +276,8 @@ def test_selected_bones_are_assigned_and_taken_off(rig: bpy.types.Object) -> Non
     assert [bone.name for bone in row.bones] == ["foot", "shin"]
     assert bpy.ops.hangtime.remove_bone(of="CONSTRAINTS", index=0) == {"FINISHED"}
     assert [bone.name for bone in row.bones] == ["shin"]
+    with pytest.raises(RuntimeError, match="has 1 fields of bones, counted from 0, and none with"):
+        bpy.ops.hangtime.remove_bone(of="CONSTRAINTS", index=1)
     cone = added(rig, KINDS["CONE"])
     assert bpy.ops.hangtime.assign_bones(of="CONSTRAINTS") == {"FINISHED"}
     assert [bone.name for bone in cone.bones] == ["foot"]
@@ -289,7 +291,8 @@ def test_ranges_are_set_from_the_timeline(rig: bpy.types.Object) -> None:
     assert asked(rig).cones[0].when == When(frames=(20.0, 20.0))
     bpy.ops.hangtime.set_constraint_range(to="PHASE")
     assert asked(rig).cones[0].when == When("ground 2")
-    assert bpy.ops.hangtime.set_constraint_range(to="PREVIEW") == {"CANCELLED"}
+    with pytest.raises(RuntimeError, match="Set a preview range in the timeline first"):
+        bpy.ops.hangtime.set_constraint_range(to="PREVIEW")
     scene.use_preview_range = True
     scene.frame_preview_start, scene.frame_preview_end = 3, 12
     bpy.ops.hangtime.set_constraint_range(to="PREVIEW")

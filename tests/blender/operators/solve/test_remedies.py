@@ -293,7 +293,8 @@ def test_a_row_of_a_failure_leads_to_its_list(analysed: bpy.types.Object) -> Non
     assert settings.contacts[settings.active_contact].name == "Left heel 1"
     assert bpy.ops.hangtime.choose_named(name="ground 2") == {"FINISHED"}
     assert active_stance(settings).name == "ground 2"
-    assert bpy.ops.hangtime.choose_named(name="Nobody") == {"CANCELLED"}
+    with pytest.raises(RuntimeError, match="No contact and no constraint is called “Nobody”"):
+        bpy.ops.hangtime.choose_named(name="Nobody")
 
 
 def test_what_a_failure_names_is_unticked_and_ticked_again(analysed: bpy.types.Object) -> None:
@@ -302,7 +303,16 @@ def test_what_a_failure_names_is_unticked_and_ticked_again(analysed: bpy.types.O
     assert not row.used
     assert bpy.ops.hangtime.tick_named(name="Left heel 1") == {"FINISHED"}
     assert row.used
-    assert bpy.ops.hangtime.tick_named(name="Nobody") == {"CANCELLED"}
+    with pytest.raises(RuntimeError, match="No contact and no constraint is called “Nobody”"):
+        bpy.ops.hangtime.tick_named(name="Nobody")
+
+
+def test_a_row_stays_ticked_where_what_goes_on_refuses(jump: bpy.types.Object) -> None:
+    assert bpy.ops.hangtime.add_constraint(kind="ANGLE") == {"FINISHED"}
+    row = jump.hangtime.constraints[-1]
+    with pytest.raises(RuntimeError, match="^Error: Press Analyze first"):
+        bpy.ops.hangtime.tick_named(name=row.name, then="hangtime.adapt")
+    assert row.used
 
 
 @pytest.mark.usefixtures("analysed")
