@@ -12,7 +12,7 @@ from pathlib import Path
 
 import bpy
 
-from ...solver.data.faults import BadRecipe, OutputNotWritable
+from ...solver.data.faults import BadBonePreset, BadRecipe, OutputNotWritable
 from ..properties.settings import HangtimeSettings
 from ..recipe.problem import parse_recipe, read_recipe_text
 from ..recipe_syntax.toml_text import sections
@@ -59,7 +59,7 @@ def _says(name: str, bones: Mapping[str, str]) -> bool:
     """Whether a preset that is there holds just these bones."""
     try:
         return dict(read_preset(preset_path(name))) == dict(bones)
-    except BadRecipe:  # somebody edited it
+    except BadBonePreset:  # somebody edited it
         return False
 
 
@@ -78,8 +78,11 @@ def write_preset(path: Path, bones: Mapping[str, str]) -> None:
 
 
 def read_preset(path: Path) -> Mapping[str, str]:
-    """The bones of a preset, by label; of any recipe, its table `[bones]`. Raises BadRecipe."""
-    bones = parse_recipe(read_recipe_text(path), str(path)).problem.bones
+    """The bones of a preset, by label; of any recipe, its table `[bones]`. Raises BadBonePreset."""
+    try:
+        bones = parse_recipe(read_recipe_text(path), str(path)).problem.bones
+    except BadRecipe as fault:
+        raise BadBonePreset(fault.path, fault.line, fault.problem) from fault
     if not bones:
-        raise BadRecipe(str(path), None, EMPTY)
+        raise BadBonePreset(str(path), None, EMPTY)
     return bones

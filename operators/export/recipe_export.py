@@ -25,7 +25,7 @@ from ..headless.outbox import Outbox
 from ..names import OperatorId
 from ..operator_types import FROM_BLEND, OperatorResult
 from ..solve.adapt import ask_for, unanalysed
-from ..solve.common import FaultyOperator, required_armature
+from ..solve.common import NO_FILE, FaultyOperator, required_armature
 from ..solve.keys import key_options
 
 EXPORTED = "Exported {}"
@@ -57,6 +57,8 @@ class ExportRecipeOperator(FaultyOperator, bpy.types.Operator, ExportHelper):  #
         return ExportHelper.invoke(self, context, event)  # type: ignore[func-returns-value, return-value]
 
     def run(self, context: bpy.types.Context) -> OperatorResult:
+        if not bpy.path.basename(self.filepath):
+            return self.refuse(NO_FILE)
         armature = required_armature(context)
         settings = settings_of(armature)
         complete(take_places(settings, showing_recorded(armature)))

@@ -12,7 +12,7 @@ from ...bridge.plots.curves import table
 from ..headless.outbox import Outbox
 from ..names import OperatorId
 from ..operator_types import FROM_BLEND, OperatorResult
-from ..solve.common import FaultyOperator, chosen_armature, required_armature
+from ..solve.common import NO_FILE, FaultyOperator, chosen_armature, required_armature
 
 NOTHING_TO_PLOT = "Press Analyze first: there is no motion to plot"
 DIGITS = 6  # of a plotted value in the table
@@ -43,6 +43,8 @@ class SavePlotsOperator(FaultyOperator, bpy.types.Operator, ExportHelper):  # ty
         return ExportHelper.invoke(self, context, event)  # type: ignore[func-returns-value, return-value]
 
     def run(self, context: bpy.types.Context) -> OperatorResult:
+        if not bpy.path.basename(self.filepath):
+            return self.refuse(NO_FILE)
         takes = {take: kept.traces for take, kept in kept_takes(required_armature(context)).items()}
         path = Path(bpy.path.abspath(self.filepath))
         with Outbox(path.parent) as outbox:

@@ -20,12 +20,11 @@ from ...bridge.constraints.bone_presets import (
 from ...bridge.properties.settings import settings_of
 from ..names import OperatorId
 from ..operator_types import FROM_BLEND, OperatorResult
-from ..solve.common import FaultyOperator, chosen_armature, required_armature
+from ..solve.common import NO_FILE, FaultyOperator, chosen_armature, required_armature
 
 NO_ARMATURE = "Choose or select an armature first"
 THERE_ALREADY = "There is a bone preset “{}” already: choose another name, or tick Replace"
 NO_PRESET = "There is no bone preset “{}”"
-NO_NAME = "Give the file a name"
 NO_BONES = "No bones are mapped: press Find Bones, or choose them"
 MOST_NAMED = 4  # in a message
 
@@ -128,6 +127,8 @@ class ImportBonePresetOperator(_BonePreset, bpy.types.Operator, ImportHelper):  
     filter_glob: bpy.props.StringProperty(default=f"*{SUFFIX}", options={"HIDDEN"})
 
     def run(self, context: bpy.types.Context) -> OperatorResult:
+        if not bpy.path.basename(self.filepath):
+            return self.refuse(NO_FILE)
         path = Path(bpy.path.abspath(self.filepath))
         bones = read_preset(path)
         name = free_preset_name(path.stem, bones)
@@ -150,7 +151,7 @@ class ExportBonePresetOperator(_BonePreset, bpy.types.Operator, ExportHelper):  
         if not bones:
             return self.refuse(NO_BONES)
         if not bpy.path.basename(self.filepath):
-            return self.refuse(NO_NAME)
+            return self.refuse(NO_FILE)
         path = Path(bpy.path.abspath(self.filepath)).with_suffix(SUFFIX)
         write_preset(path, bones)
         self.report({"INFO"}, f"Exported {path.name}")

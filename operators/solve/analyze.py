@@ -53,9 +53,9 @@ from ...solver.worker.protocol import Analysed, Fitted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.doctor_text import finding_sentence
+from ..words.doubt_text import range_words
 from ..words.headline import accepted_lines
 from ..words.messages import together
-from ..words.range_text import range_words
 from ..words.report_text import apex_words
 from ..words.shape_text import shapes_told
 from .adapt import Adapting, ask_for, followed_problem, read_wanted, require_writable

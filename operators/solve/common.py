@@ -30,6 +30,7 @@ NO_SLOT = (
     "{} uses no slot of its action, so nothing moves it: choose one beside the action's name in "
     "the Action editor, or a take in Hangtime's list"
 )
+NO_FILE = "No file is given; give the path of one"
 TWEAK_MODE = "Leave tweak mode first (Tab in the Nonlinear Animation editor)"
 
 

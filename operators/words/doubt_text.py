@@ -69,6 +69,26 @@ def frame_doubts(
     return told
 
 
+def range_words(
+    asked: tuple[float, float] | tuple[None, None],
+    there: tuple[float, float],
+    cycle: tuple[float, float],
+) -> str:
+    """Words that follow what was found: on frames that were chosen and are not there, and on a
+    range that was moved to a whole cycle.
+
+    asked: as the artist chose it, if so. there: what of it was recorded. cycle: what was analysed.
+    """
+    told = frame_doubts(asked, there)
+    if cycle != there:
+        first, last = cycle
+        told.append(
+            f"A whole cycle is frames {first:g} to {last:g}: the range begins "
+            f"{first - there[0]:+g} and ends {last - there[1]:+g} frames from where it did"
+        )
+    return "".join(f". {line}" for line in told)
+
+
 def distance_doubts(problem: MotionProblem, heads: FloatArray) -> list[str]:
     """Lines where pins or points are further from the recording, or higher, than anybody means.
 

@@ -132,6 +132,10 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
         "Recipe {path}: {problem:ended}",
         "Recipe {path}, line {line}: {problem:ended}",
     ),
+    faults.BadBonePreset: (
+        "Bone preset {path}: {problem:ended}",
+        "Bone preset {path}, line {line}: {problem:ended}",
+    ),
     faults.OutputNotWritable: "Nothing can be written to {path} ({problem}); choose another place "
     "or allow writing there.",
     faults.WouldReplaceInput: "The result would be written over {path}, from which it is made; "

@@ -127,6 +127,7 @@ from .scenes import StandsIn as StandsIn
 from .scenes import TooManyFaces as TooManyFaces
 from .scenes import TooSteep as TooSteep
 from .scenes import UnknownObject as UnknownObject
+from .solving import BadBonePreset as BadBonePreset
 from .solving import BadRecipe as BadRecipe
 from .solving import ContradictoryPins as ContradictoryPins
 from .solving import Damage as Damage

@@ -24,6 +24,11 @@ class BadRecipe(Fault):
 
 
 @dataclass
+class BadBonePreset(BadRecipe):
+    """The same of a file that holds nothing but a recipe's bones."""
+
+
+@dataclass
 class OutputNotWritable(Fault):
     """The output folder cannot be made or written."""
 

@@ -71,6 +71,8 @@ def test_a_path_from_the_file_s_folder_on_gives_no_warning(
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
     assert bpy.ops.hangtime.export_recipe(filepath="//there.toml") == {"FINISHED"}
     assert (tmp_path / "there.toml").is_file()
+    with pytest.raises(RuntimeError, match="No file is given"):
+        bpy.ops.hangtime.export_recipe(filepath="")
     assert [str(warning.message) for warning in recwarn] == []
 
 

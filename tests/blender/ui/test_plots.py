@@ -226,6 +226,8 @@ def test_a_place_that_cannot_be_written_is_said(armature: bpy.types.Object, tmp_
     taken.write_text("")
     with pytest.raises(RuntimeError, match="file"):
         bpy.ops.hangtime.save_plots(filepath=str(taken / "plots.csv"))
+    with pytest.raises(RuntimeError, match="No file is given"):
+        bpy.ops.hangtime.save_plots(filepath="")
 
 
 def test_without_a_motion_saving_is_grey_and_says_why(tmp_path: Path) -> None:

@@ -6,7 +6,6 @@ import signal
 from contextlib import suppress
 
 import pytest
-
 from hangtime.operators.headless.explained import ended_by_signals
 
 pytestmark = pytest.mark.usefixtures("_handlers_stay")

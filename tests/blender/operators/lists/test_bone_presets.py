@@ -85,7 +85,7 @@ def test_presets_are_exported_and_imported(tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", ["", "/"])
 def test_a_preset_is_not_exported_without_a_name(path: str) -> None:
     made("spanish")
-    with pytest.raises(RuntimeError, match="Error: Give the file a name"):
+    with pytest.raises(RuntimeError, match="Error: No file is given"):
         bpy.ops.hangtime.export_bone_preset(filepath=path)
 
 
@@ -124,8 +124,10 @@ def test_a_file_that_is_no_preset_is_refused(tmp_path: Path) -> None:
     made("german")
     path = tmp_path / "empty.toml"
     path.write_text("mass = 70\n", encoding="utf-8")
-    with pytest.raises(RuntimeError, match="names no bones"):
+    with pytest.raises(RuntimeError, match=r"Bone preset .*empty\.toml: names no bones"):
         bpy.ops.hangtime.import_bone_preset(filepath=str(path))
+    with pytest.raises(RuntimeError, match="No file is given"):
+        bpy.ops.hangtime.import_bone_preset(filepath="")
 
 
 @pytest.mark.slow

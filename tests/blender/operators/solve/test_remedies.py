@@ -310,7 +310,7 @@ def test_what_a_failure_names_is_unticked_and_ticked_again(analysed: bpy.types.O
 def test_a_row_stays_ticked_where_what_goes_on_refuses(jump: bpy.types.Object) -> None:
     assert bpy.ops.hangtime.add_constraint(kind="ANGLE") == {"FINISHED"}
     row = jump.hangtime.constraints[-1]
-    with pytest.raises(RuntimeError, match="^Error: Press Analyze first"):
+    with pytest.raises(RuntimeError, match=r"^Error: Press Analyze first"):
         bpy.ops.hangtime.tick_named(name=row.name, then="hangtime.adapt")
     assert row.used
 
