@@ -12,7 +12,7 @@ from ..recipe_syntax.items import (
     Kind,
     Values,
     angle,
-    number,
+    one,
     phase,
     travelled,
     vector,
@@ -20,6 +20,8 @@ from ..recipe_syntax.items import (
 )
 from ..recipe_syntax.table import Table
 from ..recipe_syntax.toml_text import entries
+
+SPAN = ("start_frame", "end_frame")
 
 
 def _read_offset(table: Table) -> Values:
@@ -36,12 +38,29 @@ def _write_offset(pin: Pin) -> Values:
     return {key: amount or None for key, amount in zip(TRAVEL_KEYS, pin.offset, strict=True)}
 
 
-def _read_correction(table: Table) -> Values:
-    table.not_both("remove", ("start_frame", "end_frame"))
-    start, end = table.number("start_frame"), table.number("end_frame")
+def _read_span(table: Table) -> Values:
+    start, end = map(table.number, SPAN)
     if start is not None and end is not None and start >= end:
         table.refuse("end_frame", f"the end, {end:g}, must come after the start, {start:g}")
-    return {"start_frame": start, "end_frame": end, "remove": table.flag("remove")}
+    return {"start_frame": start, "end_frame": end}
+
+
+def _write_span(contact: AddedContact) -> Values:
+    return {"start_frame": contact.start_frame, "end_frame": contact.end_frame}
+
+
+def point_name(word: str) -> str:
+    """A point's name ("Left toe"), whatever the capitals."""
+    return " ".join(word.split()).capitalize()
+
+
+def _point(table: Table, key: str) -> str:
+    return point_name(table.word(key) or "")
+
+
+def _read_correction(table: Table) -> Values:
+    table.not_both("remove", SPAN)
+    return {**_read_span(table), "remove": table.flag("remove")}
 
 
 def _write_correction(edit: ContactEdit) -> Values:
@@ -70,7 +89,7 @@ CONTACT = Kind(
     ContactEdit,
     (
         word("name"),
-        Item(("start_frame", "end_frame", "remove"), _read_correction, _write_correction),
+        Item((*SPAN, "remove"), _read_correction, _write_correction),
     ),
     needs=(("name",),),
     named=False,
@@ -79,7 +98,7 @@ CONTACT = Kind(
 ADDED = Kind(
     "add_contact",
     AddedContact,
-    (word("point"), number("start_frame"), number("end_frame")),
+    (one("point", _point), Item(SPAN, _read_span, _write_span)),
     needs=(("point",), ("start_frame",), ("end_frame",)),
     named=False,
 )

@@ -64,6 +64,7 @@ from ...solver.data.constants import STATURES
 from ...solver.data.faults import (
     BadDimensions,
     BadRecipe,
+    BesideFrames,
     BoneTaken,
     DependentRows,
     Fault,
@@ -85,7 +86,7 @@ from ..recipe_syntax.source_lines import KeyPath
 from ..recipe_syntax.table import ABOVE_ZERO, NOT_NEGATIVE, NumberRange, Source, Table
 from ..recipe_syntax.toml_text import entries, sections
 from ..recipe_syntax.values import recipe_values
-from .contacts import ADDED, CONTACT, PIN
+from .contacts import ADDED, CONTACT, PIN, SPAN, point_name
 from .export import EXPORT, ExportOptions
 from .keys import KEYS, KeyOptions
 from .loop import LOOP, LoopOptions
@@ -239,8 +240,13 @@ def _places(values: dict[str, Any], fault: Fault) -> list[KeyPath]:
     """Candidate origins of a fault in a recipe, best first."""
     match fault:
         case UnknownContactName():
-            contacts = enumerate(values.get("contact", ()))
-            return [("contact", i, "name") for i, entry in contacts if entry["name"] == fault.name]
+            tables = ((CONTACT.header, "name"), (ADDED.header, "point"))
+            return [
+                (header, i, key)
+                for header, key in tables
+                for i, entry in enumerate(values.get(header, ()))
+                if fault.name in (entry[key], point_name(entry[key]))
+            ]
         case FitNeedsSupport():
             return [("unseen_support",)]
         case OptionNotTaken():
@@ -262,9 +268,21 @@ def _places(values: dict[str, Any], fault: Fault) -> list[KeyPath]:
             return [place for place, called in _names(values) if called == fault.thing]
         case BadDimensions():
             return [(*REDUCTION, "dimensions"), REDUCTION]
+        case BesideFrames() if added := _added(values, fault):
+            return added
     named = [getattr(fault, name) for name in CULPRITS if hasattr(fault, name)]
     places = [place for name in named for place, called in _names(values) if called == name]
     return [inner for place in places for inner in _inside(values, place, fault)]
+
+
+def _added(values: dict[str, Any], fault: BesideFrames) -> list[KeyPath]:
+    """The contacts to add that are beside the frames."""
+    return [
+        (ADDED.header, i, key)
+        for i, entry in enumerate(values.get(ADDED.header, ()))
+        for key in SPAN
+        if entry[key] == fault.at and point_name(entry["point"]) == fault.request
+    ]
 
 
 def _names(values: dict[str, Any]) -> list[tuple[tuple[str, int], str]]:

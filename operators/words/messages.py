@@ -90,6 +90,8 @@ def _variant(fault: Fault) -> int:
             return told + (3 if _begins_far_off(fault) else 0)
         case faults.RenamedBones():
             return fault.paired
+        case faults.BadTiming():
+            return fault.seconds < 0.0
         case faults.NothingTouches():
             return bool(fault.touching)
         case faults.JoinedPhase():

@@ -26,6 +26,7 @@ from ..data.contacts import (
 )
 from ..data.faults import (
     BadTiming,
+    BesideFrames,
     CarriedBy,
     ClipTooShort,
     FramesFarApart,
@@ -360,7 +361,7 @@ def _corrected(
 ) -> ContactSchedule:
     """The schedule with the artist's corrections; unchanged contacts keep their exact instants.
 
-    Raises UnknownContactName, BadTiming.
+    Raises UnknownContactName, BadTiming, BesideFrames.
     """
     if not problem.contacts and not problem.added:
         return schedule
@@ -385,6 +386,9 @@ def _corrected(
     for added in problem.added:
         span = ((added.start_frame - first) / rate, (added.end_frame - first) / rate)
         within = (max(span[0], 0.0), min(span[1], schedule.duration))
+        if within[0] > within[1] and span[0] <= span[1]:
+            beside = added.start_frame if span[0] > 0.0 else added.end_frame
+            raise BesideFrames(added.point, beside, *performance.recording.ends)
         every.append(_added(added.point, within, performance))
     return snap(replace(schedule, contacts=tuple(every)), snap_tolerance(performance))
 

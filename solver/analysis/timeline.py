@@ -16,6 +16,7 @@ from ..data.contacts import ContactSchedule, Interval, Phase, is_phase_name, num
 from ..data.faults import (
     BadTiming,
     BesideFrames,
+    BesidePhase,
     NamedAsPhase,
     TimedTwice,
     TooMuchTime,
@@ -250,7 +251,7 @@ def active_interval(
     """Start and end, s, in new time, of when a request holds; equal for a single instant.
 
     phases: in new time. apex: (T, 2) instants, s, and heights, m, of the centre of mass.
-    Raises UnknownPhaseIn, BadTiming, BesideFrames.
+    Raises UnknownPhaseIn, BadTiming, BesideFrames, BesidePhase.
     """
     start, end = 0.0, line.duration
     if when.phase is not None:
@@ -267,6 +268,8 @@ def active_interval(
         if when.frames[1] < line.first_frame - 0.5:
             raise BesideFrames(name, when.frames[1], line.first_frame, shown)
         start, end = max(start, first), min(end, last)
+        if end < start and when.phase is not None:
+            raise BesidePhase(name, when.phase, *when.frames)
     if end < start:
         raise BadTiming(name, end - start)
     if when.moment is None:

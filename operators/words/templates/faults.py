@@ -270,10 +270,14 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     ),
     faults.StillBone: "“{request}” names the bone “{bone}”, which is none of those that physics "
     "moves; choose one, such as {likeliest:names}.",
-    faults.BadTiming: "“{request}” would last {seconds:.3f} s; change its frames, phase or "
-    "duration.",
+    faults.BadTiming: (
+        "“{request}” would last {seconds:.3f} s; change its frames, phase or duration.",
+        "“{request}” would end before it begins; change its frames, phase or duration.",
+    ),
     faults.BesideFrames: "“{request}” is about frame {at:g}, but the adapted frames are {first:g} "
     "to {last:g}; choose frames among these.",
+    faults.BesidePhase: "“{request}” is about frames {first:g} to {last:g}, which lie outside "
+    "{phase}; choose frames in it, or state only one of the two.",
     faults.NoSuchPoseFrame: "“{request}” takes its pose from frame {frame:g}, but the adapted "
     "frames are {first:g} to {last:g}; choose a pose frame among these.",
     faults.RootHasNoJoint: "“{request}” limits the joint of “{bone}”, but that is the root, which "

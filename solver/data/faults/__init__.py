@@ -65,6 +65,7 @@ from .requests import AsksNothing as AsksNothing
 from .requests import BadDimensions as BadDimensions
 from .requests import BadTiming as BadTiming
 from .requests import BesideFrames as BesideFrames
+from .requests import BesidePhase as BesidePhase
 from .requests import BeyondPrecision as BeyondPrecision
 from .requests import BeyondReason as BeyondReason
 from .requests import CrossedBounds as CrossedBounds

@@ -149,6 +149,15 @@ class BesideFrames(RequestFault):
 
 
 @dataclass
+class BesidePhase(RequestFault):
+    """A request is about frames and a phase that have none in common."""
+
+    phase: str
+    first: float
+    last: float
+
+
+@dataclass
 class NoSuchPoseFrame(RequestFault):
     """A request takes a pose from a frame beside those that are adapted."""
 

@@ -17,6 +17,7 @@ from hangtime.bridge.recipe_syntax.source_lines import json_lines, toml_lines
 from hangtime.bridge.rows.choices import KeyChoice
 from hangtime.solver.data.faults import (
     BadRecipe,
+    BesideFrames,
     BoneTaken,
     ContradictoryPins,
     MissingPart,
@@ -29,6 +30,7 @@ from hangtime.solver.data.faults import (
     UnseenSupport,
 )
 from hangtime.solver.data.problem import (
+    AddedContact,
     ContactEdit,
     MassTable,
     MotionProblem,
@@ -313,6 +315,36 @@ def test_a_missing_or_binary_file_is_refused(tmp_path) -> None:
 )
 def test_faults_of_the_solver_are_found_in_the_recipe(fault, part: str) -> None:
     assert locate(FULL, fault) == line_of(FULL, part)
+
+
+ADDED = """[[add_contact]]
+point = "left  TOE"
+start_frame = 300
+end_frame = 350
+"""
+
+
+def test_a_point_to_add_is_called_with_any_capitals() -> None:
+    assert parse_recipe(ADDED).problem.added == (AddedContact("Left toe", 300.0, 350.0),)
+
+
+def test_a_contact_to_add_that_ends_before_it_begins_is_refused() -> None:
+    with pytest.raises(BadRecipe, match="must come after the start") as caught:
+        parse_recipe(ADDED.replace("350", "250"))
+    assert caught.value.line == 4
+
+
+@pytest.mark.parametrize(
+    ("fault", "line"),
+    [
+        (UnknownContactName("Left toe", ()), 2),
+        (BesideFrames("Left toe", 300.0, 1.0, 200.0), 3),
+        (BesideFrames("Left toe", 350.0, 400.0, 500.0), 4),
+        (BesideFrames("Right toe", 350.0, 400.0, 500.0), None),
+    ],
+)
+def test_faults_of_contacts_to_add_are_found_in_the_recipe(fault, line) -> None:
+    assert locate(ADDED, fault) == line
 
 
 @pytest.mark.parametrize(

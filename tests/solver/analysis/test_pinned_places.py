@@ -16,13 +16,14 @@ from hangtime.solver.arrays import FloatArray
 from hangtime.solver.contacts.footfalls import footfalls
 from hangtime.solver.data.contacts import Contact, ContactSchedule, Touch, numbered
 from hangtime.solver.data.faults import (
+    BesideFrames,
     BeyondPrecision,
     ContradictoryPins,
     UnknownContact,
     UnknownContactName,
     UnknownPhase,
 )
-from hangtime.solver.data.problem import ContactEdit, MotionProblem, OffsetAxes, Pin
+from hangtime.solver.data.problem import AddedContact, ContactEdit, MotionProblem, OffsetAxes, Pin
 from hangtime.solver.data.requests import Vector
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, frames_of, hop
@@ -258,3 +259,11 @@ def test_unknown_corrections_are_named() -> None:
         analyse(load_recording(HOP_CLIP), problem)
     assert caught.value.name == "Left ear 1"
     assert "Left toe 1" in caught.value.known
+
+
+def test_contacts_to_add_beside_the_frames_are_refused() -> None:
+    first, last = frames_of(HOP_CLIP, HOP)
+    beside = AddedContact("Left hand", last + 10.0, last + 20.0)
+    with pytest.raises(BesideFrames) as caught:
+        analyse(load_recording(HOP_CLIP), MotionProblem(frames=(first, last), added=(beside,)))
+    assert caught.value == BesideFrames("Left hand", last + 10.0, first, last)

@@ -11,6 +11,7 @@ from hangtime.solver.data.contacts import Contact, ContactSchedule, Interval
 from hangtime.solver.data.faults import (
     BadTiming,
     BesideFrames,
+    BesidePhase,
     NamedAsPhase,
     TooMuchTime,
     UnknownPhaseIn,
@@ -266,10 +267,11 @@ def test_holds_outside_the_clip_are_refused_with_the_frames_that_there_are(at: f
     assert not told.first <= told.at <= told.last
 
 
-def test_frames_outside_a_phase_are_no_time_at_all() -> None:
-    with pytest.raises(BadTiming) as caught:
+def test_frames_outside_a_phase_are_refused() -> None:
+    with pytest.raises(BesidePhase) as caught:
         when(When(phase="flight 1", frames=(frame(0.9), frame(1.0))))
     assert caught.value.request == "asked"
+    assert "which lie outside flight 1" in sentence(caught.value)
 
 
 def test_two_holds_of_one_frame_are_both_held() -> None:
