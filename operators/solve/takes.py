@@ -25,7 +25,8 @@ from .common import ReadyOperator, required_armature, said, unready
 
 NO_RESULT_SHOWN = "The recording is shown; show the result to start from"
 BESIDE = "The armature {} performs {}, as its limbs are others"
-GONE = "The action {} is not there any more"
+GONE = "The action “{}” is not there any more"
+UNNAMED = "No action is named; give the name of a take"
 NO_KEYS = "The action {} has no keys for bones of {}; choose one of its takes"
 LEFT_BEHIND = (
     "Keys of {} were edited by hand. The next result starts from {} again, without these edits; "
@@ -71,7 +72,7 @@ class ShowTakeOperator(PolledOperator, bpy.types.Operator):
         armature = required_armature(context)
         action = _named(armature, self.action)
         if action is None:
-            return self.refuse(GONE.format(self.action))
+            return self.refuse(GONE.format(self.action) if self.action else UNNAMED)
         lost = lost_file(action)
         if lost is not None:
             return self.refuse(said(lost))

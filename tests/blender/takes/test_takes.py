@@ -397,6 +397,14 @@ def test_keys_edited_by_hand_are_seen_before_they_are_left_behind(
     assert left_behind(armature).endswith("A loop cannot take them along")
 
 
+def test_a_take_that_is_not_there_is_named(armature: bpy.types.Object) -> None:
+    assert armature is not None
+    with pytest.raises(RuntimeError, match="The action “Nobody's” is not there any more"):
+        bpy.ops.hangtime.show_take(action="Nobody's")
+    with pytest.raises(RuntimeError, match="No action is named"):
+        bpy.ops.hangtime.show_take(action="")
+
+
 class Probe(adapt_operators.AdaptOperator.__bases__[0], bpy.types.Operator):
     """Adapt as a window calls it, which only tells how. Adapt's mixin and not Adapt itself, which
     would be gone with a class of its own."""
