@@ -8,14 +8,14 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from math import isfinite
+from math import isfinite, isnan
 from typing import Any
 
 import numpy as np
 
 from ...solver.analysis.motion_sketch import MotionSketch
 from ...solver.data.contacts import Contact, ContactSchedule, Interval, Phase, PhaseKind, numbered
-from ...solver.data.faults import EmptyRange, PlacedNowhere, UnreadableRepairs
+from ...solver.data.faults import EmptyRange, NoNumber, PlacedNowhere, UnreadableRepairs
 from ...solver.data.problem import AddedContact, ContactEdit, MassTable, MotionProblem, Pin
 from ...solver.data.recording import Recording, Skin
 from ...solver.data.requests import Clear, Path, Requests
@@ -67,10 +67,11 @@ def problem_of(
     held: name of a contact that is pinned even where it was found, for of a long take what is
     solved is what pins are about, and a drag's shall be that before the mouse has moved.
     paths: as of `requests_of`.
-    Raises PlacedNowhere, EmptyRange for a contact that ends before it begins, UnreadableRepairs,
-    UnreadableText, BadRecipe, and as `requests_of`.
+    Raises NoNumber, PlacedNowhere, EmptyRange for a contact that ends before it begins,
+    UnreadableRepairs, UnreadableText, BadRecipe, and as `requests_of`.
     """
     armature: Any = settings.id_data
+    _require_numbers(settings)
     if with_contacts:
         _require_in_order(settings)
         require_readable(armature)
@@ -147,6 +148,19 @@ def _clears(settings: HangtimeSettings, scene: tuple[SceneObject, ...]) -> tuple
         for member in present_members(settings, current_scene())
         if member.clearance is not None and member.name in there
     )
+
+
+def _require_numbers(settings: HangtimeSettings) -> None:
+    """NaN, which no range of a property keeps out, has the solver give up without a reason."""
+    counting = {
+        "mass": True,
+        "height": settings.use_height,
+        "new_mass": settings.use_new_mass,
+        "gravity": True,
+    }
+    for name, counts in counting.items():
+        if counts and isnan(getattr(settings, name)):
+            raise NoNumber(settings.bl_rna.properties[name].name)
 
 
 def _require_in_order(settings: HangtimeSettings) -> None:

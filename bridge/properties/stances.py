@@ -12,7 +12,7 @@ changes neither.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import atan2, tau
+from math import atan2, isfinite, tau
 
 import bpy
 from mathutils import Matrix, Vector
@@ -298,6 +298,8 @@ def _remember(settings: Settings, phase: str) -> None:
         return
     found, now = [c.found_at for c in contacts], [c.at for c in contacts]
     old, new = _middle(found), _middle(now)
+    if not all(map(isfinite, new[:])):  # which a solve tells, and Put Back mends
+        return
     stance.shifted = _axes(stance).transposed() @ (new - old)
     arms = [(Vector(a) - old, Vector(b) - new) for a, b in zip(found, now, strict=True)]
     across = sum(a.x * b.y - a.y * b.x for a, b in arms)

@@ -30,6 +30,10 @@ SHARED = (
 NOT_RENAMED = (
     "It is not known which bones were renamed: give them the names that the recording's keys have"
 )
+RATES = 1.0, 1000.0  # frames a second that Blender's scenes can have, and captures do
+NO_RATE = "A scene cannot have {:g} frames a second; give {:g} to {:g}"
+FACTORS = 1e-6, 1e6  # beyond any two units of length that figures come in
+NO_FACTOR = "{} cannot be made {:g} times as large; give a factor from {:g} to {:,.0f}"
 
 
 class MendingOperator(ReadyOperator):
@@ -65,9 +69,13 @@ class SetFrameRateOperator(MendingOperator, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    rate: bpy.props.FloatProperty(name="Frame Rate", default=24.0, min=1.0, max=1000.0)
+    rate: bpy.props.FloatProperty(
+        name="Frame Rate", default=24.0, soft_min=RATES[0], soft_max=RATES[1]
+    )
 
     def mend(self, _armature: bpy.types.Object) -> OperatorResult:
+        if not RATES[0] <= self.rate <= RATES[1]:
+            return self.refuse(NO_RATE.format(self.rate, *RATES))
         set_frame_rate(current_scene(), self.rate)
         return self.done(f"The scene has {self.rate:.5g} frames a second now")
 
@@ -81,9 +89,13 @@ class ScaleToHumanOperator(MendingOperator, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    factor: bpy.props.FloatProperty(name="Factor", default=1.0, min=1e-6)
+    factor: bpy.props.FloatProperty(
+        name="Factor", default=1.0, soft_min=FACTORS[0], soft_max=FACTORS[1]
+    )
 
     def mend(self, armature: bpy.types.Object) -> OperatorResult:
+        if not FACTORS[0] <= self.factor <= FACTORS[1]:
+            return self.refuse(NO_FACTOR.format(armature.name, self.factor, *FACTORS))
         scale_object(armature, recorded_action(armature), self.factor)
         return self.done(f"{armature.name} is {self.factor:.3g} times as large now")
 

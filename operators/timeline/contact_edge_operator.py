@@ -1,5 +1,7 @@
 """Drag Contact Edge: retimes a contact or a phase by its bar in the timeline."""
 
+from math import isnan
+
 import bpy
 
 from ...bridge.accessors import present
@@ -53,6 +55,8 @@ class DragContactEdgeOperator(_OfKnownContacts, bpy.types.Operator):
         drag = drag_of(settings, self.contact, Edge[self.edge])
         if drag is None:
             return self.refuse(f"There is no contact or ground phase called “{self.contact}”")
+        if isnan(self.frame):
+            return self.refuse("The frame where the end is to go is no number")
         drag.begin(drag.origin)
         drag.put(self.frame, fine=True)
         if abs(drag.frame - self.frame) > 0.5:

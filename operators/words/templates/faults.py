@@ -320,6 +320,7 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     "swap them.",
     faults.PlacedNowhere: "The contact “{request}” has a place or a frame that is no number; press "
     "Put Back for its stance (panel Contacts) or give it other frames.",
+    faults.NoNumber: "“{setting}” is no number; give it one.",
     faults.ReturnTooEarly: "The take is to be back by frame {frame:g}, but is adapted until frame "
     "{last:g}; choose a later frame.",
     faults.ReturnTooLate: "The take is to be back by frame {frame:g}, but its last frame is "

@@ -79,6 +79,7 @@ from .requests import NeedsTorques as NeedsTorques
 from .requests import NoBoneChosen as NoBoneChosen
 from .requests import NoDirection as NoDirection
 from .requests import NoNewSlot as NoNewSlot
+from .requests import NoNumber as NoNumber
 from .requests import NoPhaseChosen as NoPhaseChosen
 from .requests import NoSuchPoseFrame as NoSuchPoseFrame
 from .requests import NotAboveZero as NotAboveZero

@@ -288,6 +288,13 @@ class PlacedNowhere(RequestFault):
 
 
 @dataclass
+class NoNumber(Fault):
+    """A setting that is NaN, as a script can set it; called as its field is."""
+
+    setting: str
+
+
+@dataclass
 class CrossedBounds(RequestFault):
     """A request's least value is above its greatest; both in `unit`."""
 

@@ -321,3 +321,40 @@ def test_what_is_no_operator_of_ours_does_not_go_on() -> None:
         bpy.ops.hangtime.leave_edits(then="Landing")
     with pytest.raises(RuntimeError, match=r"Error: Hangtime has no operator “wm\.quit_blender”"):
         bpy.ops.hangtime.tick_named(name="Left heel 1", then="wm.quit_blender")
+
+
+@pytest.mark.parametrize("rate", [float("nan"), 0.0, -5.0, 1e6])
+def test_a_frame_rate_that_no_scene_has_is_refused(jump: bpy.types.Object, rate: float) -> None:
+    assert jump is not None
+    render = bpy.context.scene.render
+    before = render.fps, render.fps_base
+    with pytest.raises(RuntimeError, match=r"A scene cannot have .* give 1 to 1000"):
+        bpy.ops.hangtime.set_frame_rate(rate=rate)
+    assert (render.fps, render.fps_base) == before
+
+
+@pytest.mark.parametrize("factor", [float("nan"), 0.0, -1.0, 1e30])
+def test_a_size_that_nothing_has_is_refused(jump: bpy.types.Object, factor: float) -> None:
+    before = jump.scale.copy()
+    with pytest.raises(RuntimeError, match="times as large; give a factor from 1e-06 to 1,000,000"):
+        bpy.ops.hangtime.scale_to_human(factor=factor)
+    assert jump.scale == before
+
+
+def test_settings_that_are_no_numbers_are_named(jump: bpy.types.Object) -> None:
+    settings = jump.hangtime
+    settings.mass = float("nan")
+    with pytest.raises(RuntimeError, match=r"“Mass \(kg\)” is no number"):
+        bpy.ops.hangtime.analyze()
+    settings.mass, settings.height = 70.0, float("nan")
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}  # a height that is not used
+    settings.use_height = True
+    with pytest.raises(RuntimeError, match=r"“Height \(m\)” is no number"):
+        bpy.ops.hangtime.analyze()
+
+
+def test_an_edge_that_is_to_go_to_no_frame_is_refused(analysed: bpy.types.Object) -> None:
+    before = analysed.hangtime.contacts["Right toe 1"].end_frame
+    with pytest.raises(RuntimeError, match="where the end is to go is no number"):
+        bpy.ops.hangtime.drag_contact_edge(contact="Right toe 1", edge="END", frame=float("nan"))
+    assert analysed.hangtime.contacts["Right toe 1"].end_frame == before

@@ -143,7 +143,7 @@ def test_a_landing_out_of_reach_is_told_as_the_command_line_tells_it(
 
 @pytest.mark.parametrize("number", [float("nan"), float("inf")])
 def test_a_place_that_is_no_number_is_refused_and_put_back(
-    analysed: bpy.types.Object, number: float
+    analysed: bpy.types.Object, number: float, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """As a script sets it; it passed for a landing that nobody had moved."""
     settings = analysed.hangtime
@@ -153,6 +153,12 @@ def test_a_place_that_is_no_number_is_refused_and_put_back(
     settings.active_contact = settings.contacts.find(landing(settings)[0].name)
     assert bpy.ops.hangtime.put_back() == {"FINISHED"}
     assert pins(analysed) == {}
+    landing(settings)[0].place = (number, 0.0, 0.0)
+    with pytest.raises(RuntimeError, match="that is no number|too coarse for contacts"):
+        bpy.ops.hangtime.adapt()
+    assert bpy.ops.hangtime.put_back() == {"FINISHED"}
+    assert pins(analysed) == {}
+    assert "Traceback" not in capfd.readouterr().err
     landing(settings)[0].end_frame = float("nan")
     with pytest.raises(RuntimeError, match="has a place or a frame that is no number"):
         bpy.ops.hangtime.adapt()
