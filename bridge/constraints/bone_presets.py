@@ -45,14 +45,21 @@ def preset_path(name: str) -> Path:
 
 def is_preset(name: str) -> bool:
     """Whether there is a preset of that name."""
-    return bool(name.strip()) and preset_path(name).exists()
+    return bool(name.strip()) and _is_there(preset_path(name))
+
+
+def _is_there(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError:  # a longer name than files can have
+        return False
 
 
 def free_preset_name(name: str, bones: Mapping[str, str]) -> str:
     """The name, where no preset of that name says anything else; else the next that is free:
     "My Rig 2"."""
     names = (name if count == 1 else f"{name} {count}" for count in itertools.count(1))
-    return next(each for each in names if not preset_path(each).exists() or _says(each, bones))
+    return next(each for each in names if not _is_there(preset_path(each)) or _says(each, bones))
 
 
 def _says(name: str, bones: Mapping[str, str]) -> bool:

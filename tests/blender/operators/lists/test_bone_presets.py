@@ -130,6 +130,16 @@ def test_a_file_that_is_no_preset_is_refused(tmp_path: Path) -> None:
         bpy.ops.hangtime.import_bone_preset(filepath="")
 
 
+def test_a_name_that_no_file_can_have_is_refused() -> None:
+    made("german")
+    with pytest.raises(RuntimeError, match=r"Nothing can be written to .*xxx"):
+        bpy.ops.hangtime.save_bone_preset(name="x" * 300)
+    with pytest.raises(RuntimeError, match="There is no bone preset “xxx"):
+        bpy.ops.hangtime.remove_bone_preset(name="x" * 300)
+    with pytest.raises(RuntimeError, match="There is no bone preset “xxx"):
+        bpy.ops.hangtime.apply_bone_preset(name="x" * 300)
+
+
 @pytest.mark.slow
 def test_a_rest_pose_on_the_first_frame_is_told_and_left_out() -> None:
     armature = build(RIGS["mixamo"], actor())

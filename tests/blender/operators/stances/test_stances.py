@@ -154,7 +154,7 @@ def test_a_place_that_is_no_number_is_refused_and_put_back(
     assert bpy.ops.hangtime.put_back() == {"FINISHED"}
     assert pins(analysed) == {}
     landing(settings)[0].place = (number, 0.0, 0.0)
-    with pytest.raises(RuntimeError, match="that is no number|too coarse for contacts"):
+    with pytest.raises(RuntimeError, match=r"that is no number|too coarse for contacts"):
         bpy.ops.hangtime.adapt()
     assert bpy.ops.hangtime.put_back() == {"FINISHED"}
     assert pins(analysed) == {}
