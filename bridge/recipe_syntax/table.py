@@ -129,6 +129,8 @@ class Table:
         value = self.values[key]
         if not isinstance(value, str) or not value.strip():
             self.refuse(key, f'"{key}" must be a text in quotes, not {shown(value)}')
+        if "\0" in value:  # which no file and no bone can be called
+            self.refuse(key, f'"{key}" holds the character NUL (\\u0000); leave that out')
         return value
 
     def phase(self, key: str) -> str | None:

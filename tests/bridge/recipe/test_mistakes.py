@@ -21,6 +21,12 @@ def refused(text: str) -> BadRecipe:
     return caught.value
 
 
+def test_a_clip_that_no_file_can_be_called_is_refused() -> None:
+    fault = refused('mass = 70\nclip = "a\\u0000.bvh"\n')
+    assert fault.line == 2
+    assert "holds the character NUL" in fault.problem
+
+
 WRONG = [  # what stands in FULL, and what it is replaced by, whose last line is refused
     ('moment = "apex"', 'moment = "top"'),
     ('moment = "apex"', 'moment = "apex"\nframe = 3'),
