@@ -3,7 +3,7 @@ drifts, also once it is smoothed. A line through a whole stance tells its speed.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +30,9 @@ SLOWEST = 0.04
 # Standard deviations: those of feet are told by the few stances themselves.
 SURE = 4.0
 TOLD_WITHIN = 0.25  # of a drift's way in a stance
+# Of a drift, by which a cubic through the speeds of all stances may leave it, rms: drifts of 9 cm/s
+# in noise leave 0.1 to 0.9, and what wanders by 3 cm leaves 0.7 and more.
+STEADY = 0.7
 TREMBLING = 0.003  # m, rms, that smoothing leaves of noise; clean feet have 2 mm
 ALIKE_FOR = 0.15  # s, for which what smoothing leaves of noise is alike
 ROUNDS = 8  # of choosing stances by the drift that they tell
@@ -39,13 +42,14 @@ ROUNDS = 8  # of choosing stances by the drift that they tell
 class _Stances:
     """Lines through N stances: their seconds (N,), speeds along the floor (N, 2), m/s, and mean
     squares of what is off them, and off cubics, (N,) m². standing: s, in which a foot stands or
-    both do."""
+    both do. course: (F, 2) m/s, speeds in all their frames by one cubic over the clip."""
 
     seconds: FloatArray
     speeds: FloatArray
     off: FloatArray
     off_cubics: FloatArray
     standing: float
+    course: FloatArray
 
     @property
     def tremble(self) -> bool:
@@ -71,6 +75,12 @@ class _Stances:
         way = float(np.linalg.norm(drift)) * self.seconds
         return bool((left < np.maximum(SURE * self.unsure, TOLD_WITHIN * way)).all())
 
+    def is_steady(self, drift: FloatArray) -> bool:
+        """Whether the speed stays at the drift (2,), m/s, over the clip, as that of what floats
+        about does not."""
+        left = np.sqrt(np.mean(np.sum((self.course - drift) ** 2, axis=1)))
+        return bool(left < STEADY * np.linalg.norm(drift))
+
 
 def drift_of_stances(recording: Recording, figure: Figure) -> tuple[float, float] | None:
     """M/s, along the floor, at which feet that tremble slide in all stances, where it is sure."""
@@ -84,6 +94,7 @@ def drift_of_stances(recording: Recording, figure: Figure) -> tuple[float, float
     x, y = map(float, drift)
     speed = float(np.hypot(x, y))
     sure = unsure < SLOWEST and speed > max(SLOWEST, SURE * unsure) and stances.agree(drift)
+    sure = sure and stances.is_steady(drift)
     return (x, y) if sure and speed * stances.standing > LEAST_SLID else None
 
 
@@ -128,6 +139,7 @@ def _lines(
     """Through the places (T, 3) m of each foot in the stances that are long enough."""
     times, standing = recording.times, np.zeros(len(recording.times), bool)
     lines: list[tuple[float, FloatArray, float, float]] = []
+    ways: list[tuple[FloatArray, FloatArray]] = []
     for middle, on in zip(middles, stands, strict=True):
         for part in _long(on, recording.rate):
             since = times[part] - times[part].mean()
@@ -138,11 +150,23 @@ def _lines(
                 for fit in (line, cubic)
             )
             lines.append((float(np.ptp(since)), line[0], off_line, off_cubic))
+            ways.append((times[part], way))
             standing[part] = True
     if not lines:
         return None
     seconds, speeds, off, off_cubics = map(np.array, zip(*lines, strict=True))
-    return _Stances(seconds, speeds, off, off_cubics, float(standing.sum()) / recording.rate)
+    stood = float(standing.sum()) / recording.rate
+    return _Stances(seconds, speeds, off, off_cubics, stood, _course(ways))
+
+
+def _course(ways: Sequence[tuple[FloatArray, FloatArray]]) -> FloatArray:
+    """(F, 2) m/s, the speeds of one cubic in time, by the ways of stances: each by its times
+    (n,), s, and places (n, 2), m, about their mean. F: frames of all."""
+    powers = np.arange(4)
+    grown = [times[:, None] ** (powers + 1) / (powers + 1) for times, _ in ways]
+    about = np.concatenate([each - each.mean(axis=0) for each in grown])
+    fit, *_ = np.linalg.lstsq(about, np.concatenate([way for _, way in ways]), rcond=None)
+    return np.asarray(np.concatenate([times[:, None] ** powers for times, _ in ways]) @ fit)
 
 
 def _long(stands: BoolArray, rate: float) -> Iterator[slice]:

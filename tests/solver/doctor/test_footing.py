@@ -21,11 +21,13 @@ from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.performance import find_contacts, perform
 from hangtime.solver.body.character import build_character
 from hangtime.solver.data.faults import UnseenSupport
-from hangtime.solver.data.problem import ContactEdit, MotionProblem
+from hangtime.solver.data.problem import ContactEdit, Mend, MotionProblem
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.examination.repair import repaired
+from hangtime.solver.doctor.figure import figure_of
 from hangtime.solver.doctor.finding import FindingKind
+from hangtime.solver.doctor.repairs import Repairs
 from hangtime.solver.doctor.stance.feet import FootFault, FootFaultKind, find_feet
 from hangtime.solver.doctor.stance.footing import find_footing, find_rise, find_sliding
 from hangtime.solver.doctor.stance.in_place import find_in_place
@@ -170,6 +172,17 @@ def test_noise_alone_is_no_drift(noise: tuple[float, float], seed: int) -> None:
     diagnosis = diagnose(damaged.recording)
     assert FindingKind.NOISE in {f.kind for f in diagnosis.findings}
     assert diagnosis.repairs.drift == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(("name", "seed"), [(JUMP, 1), ("high_jump.bvh", 2)])
+def test_what_sways_in_noise_does_not_drift_at_one_speed(name: str, seed: int) -> None:
+    """Its stances, few and short, agree within what noise leaves of each."""
+    recording, rng = load_recording(name), np.random.default_rng(seed)
+    noise = noisy(3.0, 1.0).do(recording.window(3.0, 403.0), rng)
+    damaged = swaying(0.04, 2.0).do(noise.recording, rng)
+    smooth = repaired(damaged.recording, Repairs(mend=(Mend.NOISE,)))
+    performance = perform(smooth, build_character(recording))
+    assert find_sliding(performance, figure_of(smooth)) is None
 
 
 @pytest.mark.slow
