@@ -134,9 +134,10 @@ def diagnose(
     dropped = find_dropped(recording)
     if dropped is not None:
         found.append(dropped)  # and not cured: what else is found is told by the frames that are
-    jumps = find_jumps(recording, figure)
-    if jumps is not None and not _are_at(jumps, _places(found, FindingKind.DROPPED_FRAMES)):
-        found.append(with_those_left(jumps, recording, figure))
+    gaps = _places(found, FindingKind.DROPPED_FRAMES)
+    jumps = find_jumps(recording, figure, gaps)
+    if jumps is not None:
+        found.append(with_those_left(jumps, recording, figure, gaps))
     told(0.35)
     for find in (find_lengths, find_noise):
         recording = cured(recording, find(recording, figure))
@@ -226,7 +227,7 @@ def _places(found: list[Finding], *kinds: FindingKind) -> Spans:
     return tuple(span for finding in found if finding.kind in kinds for span in finding.frames)
 
 
-def _are_at(finding: Finding, places: Spans, near: float = 0.0) -> bool:
+def _are_at(finding: Finding, places: Spans, near: float) -> bool:
     """Whether nothing of a finding is elsewhere. near: frames, by which it may miss them."""
     return all(
         any(a - near <= end and start <= b + near for start, end in places)

@@ -10,6 +10,7 @@ from ...arrays import FloatArray
 from ...body.anatomy import Part
 from ...data.recording import Recording
 from ...numerics.runs import runs
+from ..falls import Spans
 from ..figure import Figure
 from ..finding import Finding, FindingKind
 from ..local_poses import LocalPoses
@@ -27,9 +28,9 @@ STANDS_OUT = 4.0  # times what the steps around are off
 FEWEST = 5  # frames
 
 
-def find_jumps(recording: Recording, figure: Figure) -> Finding | None:
+def find_jumps(recording: Recording, figure: Figure, known: Spans = ()) -> Finding | None:
     """Where two takes were joined, capture mistook something, or many frames are missing; and the
-    clip's ends where a bone jumps about."""
+    clip's ends where a bone jumps about. known: places where something else is why."""
     if len(recording.frames) < FEWEST:
         return None
     local, root = LocalPoses.of(recording), figure.bones[0]
@@ -41,6 +42,10 @@ def find_jumps(recording: Recording, figure: Figure) -> Finding | None:
         first, last = ragged_ends(local, bone, wider, recording.rate)
         ragged = [*range(first), *range(len(turned) - last, len(turned))]
         turns += [(float(turned[t]), name, t) for t in [*_jumps(turned, TURN * wider), *ragged]]
+    places, turns = (
+        [each for each in told if not _is_in(known, recording.frames[each[2] : each[2] + 2])]
+        for told in (places, turns)
+    )
     if not places and not turns:
         return None
     amount, part, _ = max(places or turns)  # of the whole body where it jumps, else of a bone
@@ -51,17 +56,24 @@ def find_jumps(recording: Recording, figure: Figure) -> Finding | None:
     return Finding(FindingKind.JUMP, amount, "cm" if places else "°", frames, part)
 
 
-def with_those_left(found: Finding, recording: Recording, figure: Figure) -> Finding:
+def with_those_left(
+    found: Finding, recording: Recording, figure: Figure, known: Spans = ()
+) -> Finding:
     """With the jumps of what is kept without those found: where a clip is cut its new first and
     last steps are compared with others."""
     kept = longest_stretch(recording.ends, [found])
     if kept[1] <= kept[0]:
         return found
-    left = find_jumps(recording.window(*kept), figure)
+    left = find_jumps(recording.window(*kept), figure, known)
     if left is None:
         return found
     every = replace(found, frames=tuple(sorted({*found.frames, *left.frames})))
-    return with_those_left(every, recording, figure)
+    return with_those_left(every, recording, figure, known)
+
+
+def _is_in(known: Spans, step: FloatArray) -> bool:
+    """Whether a step from one frame to another (2,) is at one of some places."""
+    return any(step[0] <= last and first <= step[1] for first, last in known)
 
 
 def _jumps(uneven: FloatArray, limit: float) -> list[int]:

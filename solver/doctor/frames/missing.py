@@ -15,20 +15,35 @@ from ..local_poses import spans
 from ..repairs import MissingFrames, Repairs
 from ..slack import SPARSE
 
-MOVING = 1e-3  # m, of the farthest coordinate from a frame to the next
 # Missing frames of steps side by side.
+SINGLE = tuple((count,) for count in range(1, 11))
 COUNTS = (
-    *((count,) for count in range(1, 11)),
+    *SINGLE,
     *product((1, 2, 3), repeat=2),
     *product((1, 2), repeat=3),
 )
 BESIDE = 2  # steps on each side of these
-NEARER = 2.2  # times, to a cubic, if the frames are missing; where two are, two apart, 2.7 and more
-STANDS_OUT = 2.5  # times the median of how far those around are from one
 ROUNDING = 1e-7  # m, of places in single precision; what is nearer to a cubic is on it
 ALIKE = 0.4  # of a step, by which it may differ from its neighbours' way
 TOO_FAR = 1.4  # times its usual step, which a joint makes twice and more where frames are missing
 BODY = 0.5  # of the joints, that step too far; of one limb that whips round, or flips, fewer do
+
+
+@dataclass(frozen=True)
+class _Clear:
+    """How clearly steps must lack frames. moving: m, their least; nearer: times, to a cubic with
+    these frames; stands_out: times the median of how far those around are from one."""
+
+    moving: float
+    nearer: float
+    stands_out: float
+
+
+# Two that are missing, two apart, are 2.7 times nearer and more. In the mean of all joints their
+# noise averages out: by half of that honest steps, also in noise, begin to seem to lack some.
+OF_JOINTS = _Clear(moving=1e-3, nearer=2.2, stands_out=2.5)
+OF_THEIR_MEAN = _Clear(moving=0.02, nearer=1.8, stands_out=1.8)
+AS_FAR = 0.35  # of a step, by which it may differ from what lacks so many frames
 
 
 def find_dropped(recording: Recording) -> Finding | None:
@@ -37,16 +52,11 @@ def find_dropped(recording: Recording) -> Finding | None:
     if recording.rate < SPARSE:
         return None
     moves = np.diff(recording.heads.reshape(len(recording.frames), -1), axis=0)
-    sizes = {len(lacking) for lacking in COUNTS}
-    looked = {size: _Windows.of(moves, size) for size in sizes if len(moves) >= _steps_of(size)}
-    found = [
-        each
-        for lacking in COUNTS
-        if len(lacking) in looked
-        for each in looked[len(lacking)].lacking(lacking)
-    ]
     counts = np.zeros(len(recording.frames), int)  # before each frame
-    for _, at, lacking in sorted(found, reverse=True):  # the clearest first
+    for _, at, lacking in (  # the clearest first, and what noise hides from single joints last
+        *_lacking(moves, COUNTS, OF_JOINTS),
+        *_lacking_of_mean(moves),
+    ):
         if not counts[at - 1 : at + len(lacking) + 1].any():  # nor are the steps beside too long
             counts[at : at + len(lacking)] = lacking
     after = np.flatnonzero(counts)
@@ -60,6 +70,47 @@ def find_dropped(recording: Recording) -> Finding | None:
         spans(recording, counts > 0),
         remedy=Repairs(missing=missing),
     )
+
+
+def _lacking(
+    moves: FloatArray, counts: tuple[tuple[int, ...], ...], clear: _Clear
+) -> list[tuple[float, int, tuple[int, ...]]]:
+    """Where steps side by side may lack frames, the clearest first: how many times nearer to a
+    cubic, the first frame after one, and the counts. moves: (T - 1, D) m, from a frame to the
+    next."""
+    sizes = {size for size in map(len, counts) if len(moves) >= _steps_of(size)}
+    looked = {size: _Windows.of(moves, size, clear.moving) for size in sizes}
+    found = (
+        each
+        for lacking in counts
+        if len(lacking) in looked
+        for each in looked[len(lacking)].lacking(lacking, clear)
+    )
+    return sorted(found, reverse=True)
+
+
+def _lacking_of_mean(moves: FloatArray) -> list[tuple[float, int, tuple[int, ...]]]:
+    """Likewise by the mean of all joints, where poses about it lack these frames rather than none,
+    as they do in most jumps along the body's way."""
+    by_joint = moves.reshape(len(moves), -1, 3)
+    mean = by_joint.mean(axis=1)
+    found = _lacking(mean, SINGLE, OF_THEIR_MEAN)
+    if not found:
+        return []
+    poses = _Windows.of((by_joint - mean[:, None]).reshape(len(moves), -1), 1, 0.0)
+    return [
+        (nearer, at, (count,))
+        for nearer, at, (count,) in found
+        if poses.nearer((count,))[at - BESIDE - 1] > 1.0 and _goes_as_far(mean, at, count)
+    ]
+
+
+def _goes_as_far(mean: FloatArray, at: int, count: int) -> bool:
+    """Whether the step to a frame is as long as one that lacks so many; noise may be nearest to a
+    cubic with a gap of any length. mean: (T - 1, 3) m, of all joints."""
+    usual = 0.5 * (mean[at - 2] + mean[at])
+    times = float(mean[at - 1] @ usual / (usual @ usual))
+    return abs(times / (count + 1) - 1.0) < AS_FAR
 
 
 def _steps_of(several: int) -> int:
@@ -81,8 +132,9 @@ class _Windows:
     alike: BoolArray
 
     @staticmethod
-    def of(moves: FloatArray, several: int) -> _Windows:
-        """moves: (T - 1, D) m, from a frame to the next."""
+    def of(moves: FloatArray, several: int, moving: float) -> _Windows:
+        """moves: (T - 1, D) m, from a frame to the next. moving: m, least of the farthest of
+        these."""
         steps = _steps_of(several)
         count = len(moves) - steps + 1
         products = np.empty((steps, steps, count))
@@ -91,17 +143,23 @@ class _Windows:
             for k in range(steps - apart):
                 products[k, k + apart] = products[k + apart, k] = own[k : k + count]
         off = off_cubic(products, np.arange(steps + 1.0))
-        return _Windows(products, off, _is_alike(moves, several, count))
+        return _Windows(products, off, _is_alike(moves, several, moving, count))
 
-    def lacking(self, counts: tuple[int, ...]) -> Iterator[tuple[float, int, tuple[int, ...]]]:
+    def nearer(self, counts: tuple[int, ...]) -> FloatArray:
+        """(N,) how many times nearer to a cubic joints are if the steps lack so many frames."""
+        beside = np.ones(BESIDE)
+        true = np.concatenate([[0.0], beside, np.array(counts) + 1.0, beside]).cumsum()
+        return np.asarray(self.off / np.maximum(off_cubic(self.products, true), ROUNDING))
+
+    def lacking(
+        self, counts: tuple[int, ...], clear: _Clear
+    ) -> Iterator[tuple[float, int, tuple[int, ...]]]:
         """Where joints are nearer to a cubic if the steps lack so many frames: how many times
         nearer, the first frame after one, and the counts."""
-        beside, size = np.ones(BESIDE), len(self.products) + 1
-        true = np.concatenate([[0.0], beside, np.array(counts) + 1.0, beside]).cumsum()
-        ratio = self.off / np.maximum(off_cubic(self.products, true), ROUNDING)
-        for at in np.flatnonzero((ratio > NEARER) & self.alike).tolist():
+        ratio, size = self.nearer(counts), len(self.products) + 1
+        for at in np.flatnonzero((ratio > clear.nearer) & self.alike).tolist():
             around = self.off[max(at - 2 * size, 0) : at + 2 * size + 1]  # most have none of these
-            if self.off[at] > STANDS_OUT * np.median(around):
+            if self.off[at] > clear.stands_out * np.median(around):
                 yield float(ratio[at]), at + BESIDE + 1, counts
 
 
@@ -115,10 +173,10 @@ def off_cubic(products: FloatArray, instants: FloatArray) -> FloatArray:
     return np.asarray(np.sqrt(np.maximum(square, 0.0)))
 
 
-def _is_alike(moves: FloatArray, several: int, count: int) -> BoolArray:
+def _is_alike(moves: FloatArray, several: int, moving: float, count: int) -> BoolArray:
     """(count,) whether all of several steps, side by side after BESIDE others, go the way of those
     before and after them, as no jump does, these move, and most joints go too far by themselves.
-    moves: (T - 1, D) m."""
+    moves: (T - 1, D) m. moving: m, the least of the farthest coordinate."""
     by_joint = moves.reshape(len(moves), -1, 3)
     before, after = (by_joint[k : k + count] for k in (BESIDE - 1, BESIDE + several))
     alike = np.ones(count, bool)
@@ -129,6 +187,6 @@ def _is_alike(moves: FloatArray, several: int, count: int) -> BoolArray:
         times = along.sum(axis=1) / np.maximum(squares.sum(axis=1), 1e-12)
         rest = np.linalg.norm(own - times[:, None, None] * usual, axis=(1, 2))
         alike &= rest < ALIKE * np.linalg.norm(own, axis=(1, 2))
-        alike &= np.abs(usual).max(axis=(1, 2)) > MOVING
+        alike &= np.abs(usual).max(axis=(1, 2)) > moving
         alike &= (along > TOO_FAR * squares).mean(axis=1) >= BODY
     return alike

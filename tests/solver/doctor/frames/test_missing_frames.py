@@ -5,15 +5,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hangtime.devtools.doctor.damages.clock import gap
+from hangtime.devtools.doctor.damages.poses import noisy
 from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.data.faults import (
     NotBetweenFrames,
 )
+from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.examination.repair import filled, repaired
+from hangtime.solver.doctor.figure import figure_of
 from hangtime.solver.doctor.finding import FindingKind
+from hangtime.solver.doctor.frames.jumps import find_jumps
 from hangtime.solver.doctor.frames.missing import find_dropped, off_cubic
 from hangtime.solver.doctor.repairs import MissingFrames, Repairs
+from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.doctored import jump, moved_from
 
 
@@ -50,6 +55,41 @@ def test_frames_missing_side_by_side_are_each_counted() -> None:
         missing=(MissingFrames(round(first + 99), 1), MissingFrames(round(first + 100), 2))
     )
     assert apart(repaired(less, found.remedy), jump()) < 1e-4
+
+
+@pytest.mark.parametrize("at", [8, 12, 16])
+def test_a_frame_lost_in_the_noise_of_video_is_put_in_and_nothing_cut(at: int) -> None:
+    """Its step of 9 cm was told as a jump, and half the run left out."""
+    noise = _noisy("BMC_run.bvh", 0)
+    size, keep = len(noise.frames) - 1, np.delete(np.arange(len(noise.frames)), at)
+    less = replace(
+        noise,
+        frames=noise.frames[:size],
+        times=noise.times[:size],
+        heads=noise.heads[keep],
+        rotations=noise.rotations[keep],
+    )
+    diagnosis = diagnose(less)
+    assert FindingKind.JUMP not in {found.kind for found in diagnosis.findings}
+    assert diagnosis.repairs.missing == (MissingFrames(round(noise.frames[at - 1]), 1),)
+
+
+@pytest.mark.parametrize("at", [14, 21])
+def test_a_jump_along_the_way_lacks_no_frames_of_the_pose(at: int) -> None:
+    noise = _noisy("run_1.bvh", 1)
+    way = (noise.heads[at + 1, 0] - noise.heads[at - 2, 0]) * [1.0, 1.0, 0.0]
+    heads = noise.heads.copy()
+    heads[at:] += 0.1 * way / np.linalg.norm(way)
+    jumped = replace(noise, heads=heads)
+    assert find_dropped(jumped) is None
+    assert find_jumps(jumped, figure_of(jumped)) is not None
+
+
+def _noisy(name: str, seed: int) -> Recording:
+    """A run without its first frames, as one camera has it."""
+    recording = load_recording(name)
+    run = recording.window(recording.frames[0] + 2.0, recording.frames[-1])
+    return noisy(3.0, 1.0).do(run, np.random.default_rng(seed)).recording
 
 
 def test_frames_that_are_put_in_make_what_follows_later() -> None:
