@@ -88,18 +88,20 @@ def _floor(performance: Performance, schedule: ContactSchedule) -> Finding | Non
     would leave that."""
     if not schedule.contacts and not schedule.unseen:
         return None
+    if any(contact.on is not None for contact in schedule.contacts):
+        return None
     points, floor = contact_points(performance)
-    if abs(floor) <= FLOOR_OFF or any(contact.on is not None for contact in schedule.contacts):
-        return None
     boxes = (b for u in schedule.unseen for b in boxes_beneath(performance.times, points, u, floor))
-    if any(abs(box.top) <= TOP_OFF for box in boxes):
+    is_off = abs(floor) > FLOOR_OFF
+    if is_off and any(abs(box.top) <= TOP_OFF for box in boxes):
         return None
-    level, rise = Repairs(floor=floor), _rise_to_floor(performance)
+    level = Repairs(floor=floor) if is_off else None
+    rise = _rise_to_floor(performance)
     if rise is not None:
         return Finding(
             FindingKind.RISING, rise, "m/s", remedy=Repairs(rise=rise), alternative=level
         )
-    return Finding(FindingKind.FLOOR, floor, "m", remedy=level)
+    return Finding(FindingKind.FLOOR, floor, "m", remedy=level) if is_off else None
 
 
 def _rise_to_floor(performance: Performance) -> float | None:

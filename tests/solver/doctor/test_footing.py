@@ -116,6 +116,15 @@ def test_who_steps_down_to_a_low_floor_does_not_sink(down: float) -> None:
     assert floor.amount == pytest.approx(-2.0 * down, abs=0.02)
 
 
+def test_a_run_that_rises_from_a_floor_at_0_is_told_so() -> None:
+    """Its lowest feet are where the floor is."""
+    damaged = rising(0.12).of(load_recording("run_2.bvh")).recording
+    found = find_footing(perform(damaged, build_character(damaged)))
+    (told,) = (f for f in found if not f.kind.note)
+    assert (told.kind, told.alternative) == (FindingKind.RISING, None)
+    assert told.amount == pytest.approx(0.12, abs=0.02)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["run_1.bvh", "run_3.bvh"])
 def test_a_run_that_sinks_is_told_so_and_not_as_on_a_low_floor(name: str) -> None:
