@@ -31,7 +31,7 @@ from math import hypot
 from typing import get_args
 
 from ...solver.data.problem import Mend
-from ...solver.doctor.repairs import MOST_MISSING, MissingFrames, Repairs, UpAxis
+from ...solver.doctor.repairs import MOST_MISSING, STEEPEST, MissingFrames, Repairs, UpAxis
 from ..formats.motion_clip import UpAxis as FileUpAxis
 from ..recipe_syntax.items import Item, Kind, Values, choice, number, one, whole, word
 from ..recipe_syntax.table import ABOVE_ZERO, NumberRange, Table
@@ -71,6 +71,18 @@ def _read_drift(table: Table) -> Values:
 
 def _write_drift(repairs: Repairs) -> Values:
     return {"drift": repairs.drift if any(repairs.drift) else None}
+
+
+def _read_tilt(table: Table) -> Values:
+    tilt = table.pair("tilt", "[x, y]")
+    if tilt is not None and max(map(abs, tilt)) > STEEPEST:
+        steepest = f"at most {STEEPEST:g}° either way"
+        table.refuse("tilt", f'"tilt" must be {steepest}, not [{tilt[0]:g}, {tilt[1]:g}]')
+    return {} if tilt is None else {"tilt": tilt}
+
+
+def _write_tilt(repairs: Repairs) -> Values:
+    return {"tilt": repairs.tilt if any(repairs.tilt) else None}
 
 
 def _read_mend(table: Table) -> Values:
@@ -128,6 +140,7 @@ RECORDING = Kind(
     Repairs,
     (
         choice("up", UpAxis),
+        Item(("tilt",), _read_tilt, _write_tilt),
         Item(("missing",), _read_missing, _write_missing),
         whole("trim", COUNT),
         whole("trim_end", COUNT),

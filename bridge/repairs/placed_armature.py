@@ -36,7 +36,7 @@ def repair(armature: bpy.types.Object, repairs: Repairs) -> None:
 
 
 def _place(armature: bpy.types.Object, repairs: Repairs) -> None:
-    """Turns the figure upright, scales it about the world's origin and lowers it to the floor; and
+    """Turns the figure upright, and its floor level, scales it about the world's origin and lowers it to the floor; and
     with it boxes that were added to carry it."""
     top = _top(armature)
     above = top.parent if _is_ours(top.parent) else None
@@ -55,7 +55,7 @@ def _place(armature: bpy.types.Object, repairs: Repairs) -> None:
 
 def _placement(repairs: Repairs) -> Matrix:
     """Of the empty."""
-    turn = Matrix(turn_upright(repairs.up).tolist()).to_4x4()
+    turn = Matrix(turn_upright(repairs).tolist()).to_4x4()
     lowered = Matrix.Translation((0.0, 0.0, -repairs.floor / metres_per_unit(current_scene())))
     return lowered @ Matrix.Scale(repairs.scale, 4) @ turn
 

@@ -12,7 +12,14 @@ import bpy
 from ...solver.data.problem import Mend
 from ...solver.doctor.examination.diagnose import Diagnosis
 from ...solver.doctor.finding import Finding, FindingKind
-from ...solver.doctor.repairs import MOST_MISSING, MissingFrames, Repairs, UpAxis, recorded_frame
+from ...solver.doctor.repairs import (
+    MOST_MISSING,
+    STEEPEST,
+    MissingFrames,
+    Repairs,
+    UpAxis,
+    recorded_frame,
+)
 from ...solver.doctor.stance.feet import FootFault, FootFaultKind
 from ...solver.doctor.stretch import CUTTING, Span, belonging, is_clear
 from ..accessors import current_scene, source_of
@@ -75,8 +82,15 @@ def _factor(content: Any) -> float:
     return factor
 
 
-def _drift(content: Any) -> tuple[float, float]:
+def _pair(content: Any) -> tuple[float, float]:
     x, y = map(number, listed(content))
+    return x, y
+
+
+def _tilt(content: Any) -> tuple[float, float]:
+    x, y = _pair(content)
+    if not max(abs(x), abs(y)) <= STEEPEST:
+        raise ValueError(content)
     return x, y
 
 
@@ -88,9 +102,10 @@ _READ: dict[str, Callable[[Any], Any]] = {
     "mend": lambda content: tuple(map(Mend, listed(content))),
     "time_scale": _factor,
     "scale": _factor,
-    "drift": _drift,
+    "drift": _pair,
     "floor": number,
     "rise": number,
+    "tilt": _tilt,
 }
 REPAIRS = HiddenText("repairs", _read_repairs, Repairs())
 

@@ -54,6 +54,8 @@ SENTENCES = {
     FindingKind.LEAP: "The whole body is jerked downwards at up to {n:.1f} g {where}, as capture "
     "does that had lost it: nothing pulls like this.",
     FindingKind.FLOOR: "The feet stand at a height of {n:.2f} m, not on the floor at 0.",
+    FindingKind.TILTED: "The feet stand on a floor that slopes by {n:.1f}°, as that of a camera that "
+    "was not level does: turn it level if the floor was, and leave it if that is a true ramp.",
     FindingKind.RISING: "The whole body drifts {way} at {speed:.2f} m/s while it stands.",
     FindingKind.SLIDING: "The whole body slides along the floor at {n:.2f} m/s while it stands.",
     FindingKind.IN_PLACE: "The hips keep their place, and the feet that carry the body slide at "
@@ -104,6 +106,7 @@ REMEDIES = {
     FindingKind.JUMP: "Keep the Longest Part",
     FindingKind.LEAP: "Keep the Longest Part",
     FindingKind.FLOOR: "Put on the Floor",
+    FindingKind.TILTED: "Turn Level",
     FindingKind.RISING: "Hold Level",
     FindingKind.SLIDING: "Hold Still",
     FindingKind.IN_PLACE: "Give the Way Back",
@@ -123,8 +126,10 @@ def remedy_label(finding: Finding, remedy: Repairs, mass: float, rate: float) ->
         if finding.kind is FindingKind.SIZE:
             return f"Scale to {finding.amount * remedy.scale:.2f} m"
         return f"Scale × {remedy.scale:.3g}"
-    if remedy.floor != 0.0:
-        return REMEDIES[FindingKind.FLOOR]
+    alone = (remedy.floor, FindingKind.FLOOR), (remedy.rise, FindingKind.RISING)
+    for told, kind in (*alone, (any(remedy.tilt), FindingKind.TILTED)):
+        if told:
+            return REMEDIES[kind]
     return REMEDIES.get(finding.kind, REPAIR)
 
 
@@ -201,6 +206,7 @@ def rounded(repairs: Repairs) -> Repairs:
         round(repairs.floor, 4),
         repairs.trim_end,
         round(repairs.rise, 4),
+        (round(repairs.tilt[0], 2), round(repairs.tilt[1], 2)),
     )
 
 

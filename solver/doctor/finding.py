@@ -32,6 +32,7 @@ class FindingKind(Enum):
     JUMP = "jump"
     LEAP = "leap"
     FLOOR = "floor"
+    TILTED = "tilted floor"
     RISING = "rising"
     SLIDING = "sliding"
     IN_PLACE = "in place"

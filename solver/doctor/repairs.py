@@ -10,6 +10,7 @@ from ..data.faults import NotBetweenFrames
 from ..data.problem import Mend
 
 MOST_MISSING = 1000  # frames in one place; what lies between seconds apart is anybody's guess
+STEEPEST = 10.0  # °; no camera is so far off the level
 
 
 class UpAxis(Enum):
@@ -56,7 +57,8 @@ def recorded_frame(frame: float, missing: Sequence[MissingFrames]) -> float:
 class Repairs:
     """What to mend, in this order; the defaults leave a recording as it is.
 
-    up: what becomes Z. missing: frames that are put in, or taken out; all others of a recipe
+    up: what becomes Z. tilt: °, by which the floor then slopes upwards along X and along Y, and
+    which becomes level. missing: frames that are put in, or taken out; all others of a recipe
     count with them.
     trim, trim_end: frames left out at the beginning and at the end of the whole clip. mend: of the
     poses. time_scale, scale: factors of durations and of lengths. drift and rise: m/s, along the
@@ -74,6 +76,7 @@ class Repairs:
     floor: float = 0.0
     trim_end: int = 0
     rise: float = 0.0
+    tilt: tuple[float, float] = (0.0, 0.0)
 
     @property
     def trims(self) -> bool:
@@ -83,7 +86,8 @@ class Repairs:
     @property
     def places(self) -> bool:
         """Whether the figure is turned, scaled or lowered, as the scene can show it."""
-        return self.up is not UpAxis.Z or self.scale != 1.0 or self.floor != 0.0
+        turned = self.up is not UpAxis.Z or any(self.tilt)
+        return turned or self.scale != 1.0 or self.floor != 0.0
 
     def without(self, other: Repairs) -> Repairs:
         """These, but for what the other changes."""
@@ -117,4 +121,5 @@ class Repairs:
             other.floor or self.floor,
             max(self.trim_end, other.trim_end),
             other.rise or self.rise,
+            other.tilt if other.tilt != usual.tilt else self.tilt,
         )

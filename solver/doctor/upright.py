@@ -88,9 +88,17 @@ def _along(way: FloatArray) -> UpAxis | None:
     return best if shares[best] > UPRIGHT else None
 
 
-def turn_upright(up: UpAxis) -> FloatArray:
-    """(3, 3) rotation that takes an axis to Z."""
-    axis = _SIGNS[up] * _AXES[up]
+def turn_upright(repairs: Repairs) -> FloatArray:
+    """(3, 3) rotation that takes the axis that is up to Z, and then a floor that slopes to one that
+    is level."""
+    slopes = np.tan(np.radians(repairs.tilt))
+    normal = np.append(-slopes, 1.0)
+    level = shortest_rotation(normal / np.linalg.norm(normal), _AXES[UpAxis.Z])
+    return np.asarray(level @ _turn_to_z(repairs.up))
+
+
+def _turn_to_z(up: UpAxis) -> FloatArray:
+    """(3, 3) rotation."""
     if up is UpAxis.MINUS_Z:
         return np.diag([1.0, -1.0, -1.0])
-    return shortest_rotation(axis, _AXES[UpAxis.Z])
+    return shortest_rotation(_SIGNS[up] * _AXES[up], _AXES[UpAxis.Z])

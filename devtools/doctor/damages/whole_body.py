@@ -85,6 +85,19 @@ def rising(speed: float) -> Damage:
     return Damage(f"rise {speed:g} m/s", FindingKind.RISING, do)
 
 
+def tilted(angle: float) -> Damage:
+    """The whole world, as a camera has it that was not level: the floor slopes along the body's way
+    by °, upwards."""
+
+    def do(recording: Recording, _: np.random.Generator) -> Damaged:
+        hips = recording.heads[:, figure_of(recording).bones[0], :2]
+        way = (hips[-1] - hips[0]) / np.linalg.norm(hips[-1] - hips[0])
+        x, y = np.degrees(np.arctan(-np.tan(np.radians(angle)) * way)).tolist()
+        return Damaged(turned(recording, Repairs(tilt=(x, y))), recording)
+
+    return Damage(f"floor tilted by {angle:+g}°", FindingKind.TILTED, do)
+
+
 def floating(metres: float, seconds: float) -> Damage:
     """The whole body floats up and down by so much, over and over, as capture by one camera has
     it."""

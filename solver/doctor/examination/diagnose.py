@@ -34,6 +34,7 @@ from ..repairs import Repairs
 from ..retimed import explained, find_retimed
 from ..stance.feet import find_sliding_feet
 from ..stance.footing import find_footing
+from ..stance.tilted import find_tilt
 from ..stretch import CUTTING, Span, longest_stretch
 from ..upright import find_level_hips, find_up
 from .drifts import find_drifts
@@ -181,6 +182,10 @@ def diagnose(
         performed.cache_clear()
         touched.cache_clear()
         performance = performed(placed)
+    tilt = find_tilt(performed(placed).recording, figure)
+    if tilt is not None and all(contact.on is None for contact in touched(placed).contacts):
+        found.append(tilt)
+        placed = placed.joined(_remedy(tilt))
     drifts = find_drifts(lambda repairs: as_stood(performed(repairs), scene), figure, placed)
     found += drifts
     placed = reduce(Repairs.joined, map(_remedy, drifts), placed)

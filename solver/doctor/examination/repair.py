@@ -108,12 +108,12 @@ def unplaced(recording: Recording, repairs: Repairs) -> Recording:
     """As it was before it was turned, put on another clock and scale, and on the floor."""
     raised = placed(recording, Repairs(floor=-repairs.floor))
     back = Repairs(time_scale=1.0 / repairs.time_scale, scale=1.0 / repairs.scale)
-    return _rotated(placed(raised, back), turn_upright(repairs.up).T)
+    return _rotated(placed(raised, back), turn_upright(repairs).T)
 
 
 def turned(recording: Recording, repairs: Repairs) -> Recording:
-    """With the axis that is up along Z."""
-    return _rotated(recording, turn_upright(repairs.up))
+    """With the axis that is up along Z, and its floor level."""
+    return _rotated(recording, turn_upright(repairs))
 
 
 def _rotated(recording: Recording, turn: FloatArray) -> Recording:
@@ -240,7 +240,7 @@ def placed_skin(skin: Skin | None, repairs: Repairs) -> Skin | None:
     """A skin where `repaired` has the rest pose."""
     if skin is None:
         return None
-    points = repairs.scale * (skin.points @ turn_upright(repairs.up).T)
+    points = repairs.scale * (skin.points @ turn_upright(repairs).T)
     return replace(skin, points=points - np.array([0.0, 0.0, repairs.floor]))
 
 
@@ -249,7 +249,7 @@ def unplaced_skin(skin: Skin | None, repairs: Repairs) -> Skin | None:
     if skin is None:
         return None
     raised = skin.points + np.array([0.0, 0.0, repairs.floor])
-    return replace(skin, points=raised @ turn_upright(repairs.up) / repairs.scale)
+    return replace(skin, points=raised @ turn_upright(repairs) / repairs.scale)
 
 
 def placed(recording: Recording, repairs: Repairs) -> Recording:

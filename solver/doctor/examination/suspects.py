@@ -12,9 +12,9 @@ from ..finding import Finding, FindingKind
 from ..repairs import Repairs
 from .diagnose import diagnose
 
-# What objects of the scene may explain: a box to stand on, a train, a belt.
+# What objects of the scene may explain: a box to stand on, a ramp, a train, a belt.
 ABOUT_GROUND = (
-    *(FindingKind.FLOOR, FindingKind.SLIDING, FindingKind.RISING),
+    *(FindingKind.FLOOR, FindingKind.TILTED, FindingKind.SLIDING, FindingKind.RISING),
     *(FindingKind.IN_PLACE, FindingKind.FLOATING, FindingKind.SINKING),
 )
 

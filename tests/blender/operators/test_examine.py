@@ -533,7 +533,7 @@ def test_a_trim_makes_the_frame_range(jump) -> None:
 
 def test_unplaced_takes_back_what_the_scene_shows(jump) -> None:
     raw = read_recorded(jump, *JUMP_FRAMES)
-    repairs = Repairs(UpAxis.Y, time_scale=0.8, scale=0.5, floor=0.3)
+    repairs = Repairs(UpAxis.Y, time_scale=0.8, scale=0.5, floor=0.3, tilt=(1.5, -0.5))
     repair(jump, repairs)
     back = unplaced(read_recorded(jump, *JUMP_FRAMES), repairs)
     np.testing.assert_allclose(back.heads, raw.heads, atol=1e-5)

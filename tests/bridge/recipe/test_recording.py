@@ -10,7 +10,9 @@ from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis
 
 MISSING = (MissingFrames(-5, 1), MissingFrames(57, 4), MissingFrames(103, -36))
 MENDS = (Mend.HELD_FRAMES, Mend.FLIPS)
-FULL = Repairs(UpAxis.MINUS_X, MISSING, 2, MENDS, 0.8, 1.6, (0.1, -0.25), 0.12, 30, -0.05)
+FULL = Repairs(
+    UpAxis.MINUS_X, MISSING, 2, MENDS, 0.8, 1.6, (0.1, -0.25), 0.12, 30, -0.05, (1.5, -0.25)
+)
 
 
 def test_repairs_come_back() -> None:
@@ -55,6 +57,8 @@ def test_a_recipe_that_says_nothing_repairs_nothing() -> None:
         'up = "W"',
         "drift = [1]",
         "rise = 50",
+        "tilt = [1.5]",
+        "tilt = [0, -40]",
         "missing = { soon = 4 }",
         "missing = { 57 = 0 }",
         "missing = [57, 4]",

@@ -78,6 +78,9 @@ def test_remedies_are_called_by_what_they_set() -> None:
     sinking = Finding(FindingKind.RISING, -0.12, "m/s")
     assert remedy_label(sinking, Repairs(rise=-0.12), 0.0, 24.0) == "Hold Level"
     assert remedy_label(sinking, Repairs(floor=-0.24), 0.0, 24.0) == "Put on the Floor"
+    sloping = Finding(FindingKind.TILTED, 1.5, "°")
+    assert remedy_label(sloping, Repairs(tilt=(0.2, 1.48)), 0.0, 24.0) == "Turn Level"
+    assert remedy_label(sloping, Repairs(rise=0.05), 0.0, 24.0) == "Hold Level"
     giant = Finding(FindingKind.SIZE, 30.1, "m")
     assert remedy_label(giant, Repairs(scale=0.05644), 0.0, 24.0) == "Scale to 1.70 m"
     heavy = Finding(FindingKind.MASS, 200.0, "kg")

@@ -1,0 +1,140 @@
+"""A floor that slopes: heights at which feet stand lie in a plane that is not level, as capture by
+a camera has it that was not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import atan, degrees, radians, tan
+
+import numpy as np
+
+from ...arrays import FloatArray
+from ...data.recording import Recording
+from ...numerics.runs import runs
+from ...skeleton.parts import SIDES
+from ..figure import Figure
+from ..finding import Finding, FindingKind
+from ..repairs import Repairs
+from .flat_feet import STANDING_SPEED_UP, foot_ends
+
+# Of clean clips up to 0.6°; steps and boxes slope by 8° and more, which no camera does.
+LEAST, MOST = 0.7, 4.0  # °
+REACH = 0.05  # s, before and after, over which a ball's speed is told; a run's stands for 0.15 s
+SLOW = 0.4  # m/s, along the floor, of a ball that stands; one that is lifted goes faster
+LIFTED = 0.08  # m above the other foot's
+LEAST_STANCE = 0.03  # s
+FEWEST = 3  # stances: a plane through fewer leaves nothing to tell it by
+UNEVEN = 0.01  # m, standard deviation of places' heights; honest ones by up to that
+OFF = 0.012  # m, rms, by which balls that stand miss the plane; honest ones by up to 0.008
+LEFT = 0.4  # of how much the places' heights differ, by the plane; a single kerb leaves 0.45
+# A rise leaves so much less than the plane where it is why; in runs, whose short stances tell the
+# one hardly from the other, and whose balls sink as they are loaded, a camera is likelier off.
+SURELY_RISES = 1.5
+DOUBTFUL = 2.0  # times what one of a plane and a rise leaves, that the other one does
+# Of the plane: places tell heights to 8 mm; it slopes by about 1.5°, and the balls' joints of both
+# feet, which skeletons have up to 1 cm apart, are else taken for a slope across the way.
+HEIGHT, SLOPE, APART = 0.008, tan(radians(1.5)), 0.01
+MOST_APART = 0.012  # m; of feet on steps more
+
+
+def find_tilt(recording: Recording, figure: Figure) -> Finding | None:
+    """Feet that stand on a plane that slopes by a few degrees, or else, as short stances may leave
+    it open, on a floor that rises, or sinks, at one speed.
+
+    recording: in its right size and time.
+    """
+    stances = list(_stances(recording, figure))
+    if len(stances) < FEWEST:
+        return None
+    plane = _Plane.through(stances)
+    x, y = (degrees(atan(each)) for each in plane.slope.tolist())
+    angle = degrees(atan(float(np.hypot(*plane.slope))))
+    off = plane.off(stances)
+    if not LEAST < angle < MOST or off > OFF or not plane.explains(stances):
+        return None
+    rise, risen_off = _rise(stances, plane.apart)
+    tilted, risen = Repairs(tilt=(x, y)), Repairs(rise=rise)
+    if off < SURELY_RISES * risen_off:
+        other = risen if risen_off < DOUBTFUL * off else None
+        return Finding(FindingKind.TILTED, angle, "°", remedy=tilted, alternative=other)
+    if off < DOUBTFUL * risen_off:
+        return Finding(FindingKind.RISING, rise, "m/s", remedy=risen, alternative=tilted)
+    return None
+
+
+@dataclass(frozen=True)
+class _Stance:
+    """Of one foot: seconds (n,), the ball's places (n, 3), m, and 1 of a left one, -1 of a right
+    one."""
+
+    times: FloatArray
+    places: FloatArray
+    side: float
+
+    @property
+    def place(self) -> FloatArray:
+        """(3,) m."""
+        return np.asarray(np.median(self.places, axis=0))
+
+
+def _stances(recording: Recording, figure: Figure) -> Iterator[_Stance]:
+    """While a ball stands: in walks and in runs the longest that any part of a foot does."""
+    reach = max(round(REACH * recording.rate), 1)
+    if len(recording.times) <= 2 * reach:
+        return
+    balls = [foot_ends(recording, figure, side)[1] for side in SIDES]
+    lowest = np.min([ball[:, 2] for ball in balls], axis=0)
+    for ball, side in zip(balls, (1.0, -1.0), strict=True):
+        inner = (ball[2 * reach :] - ball[: -2 * reach]) * (recording.rate / (2 * reach))
+        velocity = np.pad(inner, ((reach, reach), (0, 0)), mode="edge")
+        stands = np.linalg.norm(velocity[:, :2], axis=1) < SLOW
+        stands &= np.abs(velocity[:, 2]) < STANDING_SPEED_UP
+        stands &= ball[:, 2] < lowest + LIFTED
+        for first, last in runs(stands):
+            if last - first >= max(LEAST_STANCE * recording.rate, 1.0):
+                part = slice(first, last + 1)
+                yield _Stance(recording.times[part], ball[part], side)
+
+
+@dataclass(frozen=True)
+class _Plane:
+    """Its slope (2,), upwards along x and y, and how far, m, left balls are above it and right ones
+    below."""
+
+    slope: FloatArray
+    apart: float
+
+    @staticmethod
+    def through(stances: list[_Stance]) -> _Plane:
+        """Least squares, with what is likely of a slope where the places tell little."""
+        places = np.stack([stance.place for stance in stances])
+        known = np.column_stack([places[:, :2], [stance.side for stance in stances]])
+        known = known - known.mean(axis=0)
+        likely = np.diag((HEIGHT / np.array([SLOPE, SLOPE, APART])) ** 2)
+        found = np.linalg.solve(known.T @ known + likely, known.T @ places[:, 2])
+        return _Plane(found[:2], float(found[2]))
+
+    def explains(self, stances: list[_Stance]) -> bool:
+        """Whether it is why heights differ, and not that feet are on things of their own."""
+        uneven = float(np.std([stance.place[2] for stance in stances]))
+        left = float(np.std([self._above(each, each.place[None]).item() for each in stances]))
+        return uneven > UNEVEN and left < LEFT * uneven and abs(self.apart) < MOST_APART
+
+    def off(self, stances: list[_Stance]) -> float:
+        """M, rms, by which all that stands misses it."""
+        return float(np.std(np.concatenate([self._above(each, each.places) for each in stances])))
+
+    def _above(self, stance: _Stance, places: FloatArray) -> FloatArray:
+        """(n,) m, by which places (n, 3) of a foot are above a plane through the origin."""
+        apart = self.apart * stance.side
+        return np.asarray(places[:, 2] - places[:, :2] @ self.slope - apart)
+
+
+def _rise(stances: list[_Stance], apart: float) -> tuple[float, float]:
+    """M/s, at which all that stands rises, and m, rms, by which it misses that. apart: m, as of a
+    plane."""
+    times = np.concatenate([stance.times for stance in stances])
+    heights = np.concatenate([each.places[:, 2] - apart * each.side for each in stances])
+    rise = float(np.polyfit(times, heights, 1)[0])
+    return rise, float(np.std(heights - rise * times))

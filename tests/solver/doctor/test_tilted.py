@@ -1,0 +1,78 @@
+"""A floor that slopes, as of a camera that was not level."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hangtime.devtools.doctor.damages.whole_body import rising, tilted
+from hangtime.devtools.doctor.measure import apart
+from hangtime.solver.arrays import FloatArray
+from hangtime.solver.data.recording import Recording
+from hangtime.solver.doctor.examination.diagnose import diagnose
+from hangtime.solver.doctor.examination.repair import repaired
+from hangtime.solver.doctor.figure import figure_of
+from hangtime.solver.doctor.finding import Finding, FindingKind
+from hangtime.solver.doctor.repairs import Repairs, UpAxis
+from hangtime.solver.doctor.stance.tilted import find_tilt
+from hangtime.solver.doctor.upright import turn_upright
+from hangtime.tests.helpers.clips import load_recording
+from hangtime.tests.helpers.doctored import jump
+
+RUN, HOPS = "run_2.bvh", "131_03_hop.bvh"
+
+
+def told(recording: Recording) -> Finding | None:
+    return find_tilt(recording, figure_of(recording))
+
+
+def climbed(recording: Recording, metres: float, at: Sequence[float]) -> Recording:
+    """Steps of such a height in its way, at these shares of it."""
+    hips = recording.heads[:, figure_of(recording).bones[0], :2]
+    way = (hips - hips[0]) @ (hips[-1] - hips[0]) / np.sum((hips[-1] - hips[0]) ** 2)
+    ramps: list[FloatArray] = [np.clip((way - share) / 0.05, 0.0, 1.0) for share in at]
+    up = metres * np.sum(ramps, axis=0)[:, None, None] * np.array([0.0, 0.0, 1.0])
+    return replace(recording, heads=recording.heads + up)
+
+
+@pytest.mark.parametrize("angle", [-3.0, -1.5, 1.5, 3.0])
+@pytest.mark.parametrize("recorded", [jump(), load_recording(RUN)])
+def test_a_slope_is_told_and_turned_level(recorded: Recording, angle: float) -> None:
+    damaged = tilted(angle).of(recorded)
+    found = told(damaged.recording)
+    assert found is not None
+    assert (found.kind, found.remedy is None) == (FindingKind.TILTED, False)
+    assert found.amount == pytest.approx(abs(angle), abs=0.3)
+    assert apart(repaired(damaged.recording, found.remedy or Repairs()), damaged.original) < 0.01
+
+
+@pytest.mark.parametrize("angle", [-1.5, 1.5])
+def test_of_a_jump_on_a_slope_nothing_else_is_told(angle: float) -> None:
+    """It was told to have the weight beside its feet."""
+    diagnosis = diagnose(tilted(angle).of(jump()).recording)
+    assert [finding.kind for finding in diagnosis.findings] == [FindingKind.TILTED]
+
+
+@pytest.mark.parametrize(
+    ("name", "metres"), [*((RUN, each) for each in (0.03, 0.05, 0.1, 0.2)), (HOPS, 0.1)]
+)
+def test_a_kerb_and_a_box_are_no_slope(name: str, metres: float) -> None:
+    assert told(climbed(load_recording(name), metres, (0.5,))) is None
+
+
+def test_a_box_to_jump_on_and_stairs_are_no_slope() -> None:
+    assert told(climbed(jump(), 0.2, (0.5,))) is None
+    assert told(climbed(load_recording(RUN), 0.15, (0.2, 0.4, 0.6, 0.8))) is None
+
+
+@pytest.mark.parametrize("speed", [-0.1, 0.05, 0.1])
+def test_a_body_that_drifts_upwards_is_on_no_slope(speed: float) -> None:
+    """Within a stance its feet rise, which on a slope they do not."""
+    assert told(rising(speed).of(jump()).recording) is None
+
+
+def test_a_slope_is_counted_from_where_the_figure_is_upright() -> None:
+    turn = turn_upright(Repairs(UpAxis.Y, tilt=(3.0, 0.0)))
+    np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-12)
+    slope = np.array([np.cos(np.radians(3.0)), np.sin(np.radians(3.0)), 0.0])  # Y is up
+    np.testing.assert_allclose(turn @ slope, [1.0, 0.0, 0.0], atol=1e-12)
