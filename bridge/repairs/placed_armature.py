@@ -36,8 +36,8 @@ def repair(armature: bpy.types.Object, repairs: Repairs) -> None:
 
 
 def _place(armature: bpy.types.Object, repairs: Repairs) -> None:
-    """Turns the figure upright, and its floor level, scales it about the world's origin and lowers it to the floor; and
-    with it boxes that were added to carry it."""
+    """Turns the figure upright, and its floor level, scales it about the world's origin and lowers
+    it to the floor; and with it boxes that were added to carry it."""
     top = _top(armature)
     above = top.parent if _is_ours(top.parent) else None
     before = Matrix() if above is None else above.matrix_basis.copy()

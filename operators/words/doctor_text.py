@@ -54,8 +54,8 @@ SENTENCES = {
     FindingKind.LEAP: "The whole body is jerked downwards at up to {n:.1f} g {where}, as capture "
     "does that had lost it: nothing pulls like this.",
     FindingKind.FLOOR: "The feet stand at a height of {n:.2f} m, not on the floor at 0.",
-    FindingKind.TILTED: "The feet stand on a floor that slopes by {n:.1f}°, as that of a camera that "
-    "was not level does: turn it level if the floor was, and leave it if that is a true ramp.",
+    FindingKind.TILTED: "The feet stand on a floor that slopes by {n:.1f}°, as that of a camera "
+    "that was not level does: turn it level if the floor was, and leave it if that is a true ramp.",
     FindingKind.RISING: "The whole body drifts {way} at {speed:.2f} m/s while it stands.",
     FindingKind.SLIDING: "The whole body slides along the floor at {n:.2f} m/s while it stands.",
     FindingKind.IN_PLACE: "The hips keep their place, and the feet that carry the body slide at "

@@ -38,7 +38,7 @@ from ..stance.tilted import find_tilt
 from ..stretch import CUTTING, Span, longest_stretch
 from ..upright import find_level_hips, find_up
 from .drifts import find_drifts
-from .ground import as_stood
+from .ground import as_stood, beneath
 from .repair import placed_skin, repaired, taken_out
 from .scales import find_scales
 
@@ -182,8 +182,9 @@ def diagnose(
         performed.cache_clear()
         touched.cache_clear()
         performance = performed(placed)
-    tilt = find_tilt(performed(placed).recording, figure)
-    if tilt is not None and all(contact.on is None for contact in touched(placed).contacts):
+    upright = performed(placed).recording
+    tilt = find_tilt(upright, figure, beneath(upright, scene))
+    if tilt is not None:
         found.append(tilt)
         placed = placed.joined(_remedy(tilt))
     drifts = find_drifts(lambda repairs: as_stood(performed(repairs), scene), figure, placed)

@@ -7,10 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...analysis.performance import Performance, perform
+from ...arrays import FloatArray
+from ...data.recording import Recording
 from ...data.scene import SceneObject
 from ...scene.support import Heights, StandingGround
 from ..repairs import Repairs
-from ..stance.footing import FLOOR_OFF, standing
+from ..stance.footing import FLOOR_OFF, NEAR, standing
 from .repair import placed, placed_skin
 
 
@@ -28,6 +30,17 @@ def as_stood(performance: Performance, scene: Sequence[SceneObject]) -> Performa
             return _lowered(seen, top)
     top = _top(performance, ground.heights)
     return performance if top is None else _lowered(performance, top)
+
+
+def beneath(recording: Recording, scene: Sequence[SceneObject]) -> Heights:
+    """Heights, m, of the scene's ground right below places; 0 where there is none."""
+    ground = StandingGround.of(-np.inf, scene, recording)
+
+    def heights(times: FloatArray, places: FloatArray) -> FloatArray:
+        tops = ground.heights(times, places)
+        return np.where(np.abs(places[:, 2] - tops) < NEAR, tops, 0.0)
+
+    return heights
 
 
 def _top(performance: Performance, heights: Heights) -> float | None:

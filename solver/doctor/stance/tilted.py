@@ -12,6 +12,7 @@ import numpy as np
 from ...arrays import FloatArray
 from ...data.recording import Recording
 from ...numerics.runs import runs
+from ...scene.support import Heights
 from ...skeleton.parts import SIDES
 from ..figure import Figure
 from ..finding import Finding, FindingKind
@@ -38,13 +39,13 @@ HEIGHT, SLOPE, APART = 0.008, tan(radians(1.5)), 0.01
 MOST_APART = 0.012  # m; of feet on steps more
 
 
-def find_tilt(recording: Recording, figure: Figure) -> Finding | None:
+def find_tilt(recording: Recording, figure: Figure, beneath: Heights) -> Finding | None:
     """Feet that stand on a plane that slopes by a few degrees, or else, as short stances may leave
     it open, on a floor that rises, or sinks, at one speed.
 
-    recording: in its right size and time.
+    recording: in its right size and time. beneath: ground that is known, which may slope itself.
     """
-    stances = list(_stances(recording, figure))
+    stances = list(_stances(recording, figure, beneath))
     if len(stances) < FEWEST:
         return None
     plane = _Plane.through(stances)
@@ -56,7 +57,7 @@ def find_tilt(recording: Recording, figure: Figure) -> Finding | None:
     rise, risen_off = _rise(stances, plane.apart)
     tilted, risen = Repairs(tilt=(x, y)), Repairs(rise=rise)
     if off < SURELY_RISES * risen_off:
-        other = risen if risen_off < DOUBTFUL * off else None
+        other = risen if risen_off < min(DOUBTFUL * off, LEFT * _uneven(stances)) else None
         return Finding(FindingKind.TILTED, angle, "°", remedy=tilted, alternative=other)
     if off < DOUBTFUL * risen_off:
         return Finding(FindingKind.RISING, rise, "m/s", remedy=risen, alternative=tilted)
@@ -65,8 +66,8 @@ def find_tilt(recording: Recording, figure: Figure) -> Finding | None:
 
 @dataclass(frozen=True)
 class _Stance:
-    """Of one foot: seconds (n,), the ball's places (n, 3), m, and 1 of a left one, -1 of a right
-    one."""
+    """Of one foot: seconds (n,), the ball's places (n, 3), m, above the ground, and 1 of a left
+    one, -1 of a right one."""
 
     times: FloatArray
     places: FloatArray
@@ -78,7 +79,7 @@ class _Stance:
         return np.asarray(np.median(self.places, axis=0))
 
 
-def _stances(recording: Recording, figure: Figure) -> Iterator[_Stance]:
+def _stances(recording: Recording, figure: Figure, beneath: Heights) -> Iterator[_Stance]:
     """While a ball stands: in walks and in runs the longest that any part of a foot does."""
     reach = max(round(REACH * recording.rate), 1)
     if len(recording.times) <= 2 * reach:
@@ -94,7 +95,9 @@ def _stances(recording: Recording, figure: Figure) -> Iterator[_Stance]:
         for first, last in runs(stands):
             if last - first >= max(LEAST_STANCE * recording.rate, 1.0):
                 part = slice(first, last + 1)
-                yield _Stance(recording.times[part], ball[part], side)
+                times, places = recording.times[part], ball[part].copy()
+                places[:, 2] -= beneath(times, places)
+                yield _Stance(times, places, side)
 
 
 @dataclass(frozen=True)
@@ -117,7 +120,7 @@ class _Plane:
 
     def explains(self, stances: list[_Stance]) -> bool:
         """Whether it is why heights differ, and not that feet are on things of their own."""
-        uneven = float(np.std([stance.place[2] for stance in stances]))
+        uneven = _uneven(stances)
         left = float(np.std([self._above(each, each.place[None]).item() for each in stances]))
         return uneven > UNEVEN and left < LEFT * uneven and abs(self.apart) < MOST_APART
 
@@ -129,6 +132,11 @@ class _Plane:
         """(n,) m, by which places (n, 3) of a foot are above a plane through the origin."""
         apart = self.apart * stance.side
         return np.asarray(places[:, 2] - places[:, :2] @ self.slope - apart)
+
+
+def _uneven(stances: list[_Stance]) -> float:
+    """M, standard deviation of their heights."""
+    return float(np.std([stance.place[2] for stance in stances]))
 
 
 def _rise(stances: list[_Stance], apart: float) -> tuple[float, float]:

@@ -12,7 +12,10 @@ from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.scene import SceneObject
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.examination.ground import as_stood
+from hangtime.solver.doctor.examination.repair import turned
+from hangtime.solver.doctor.repairs import Repairs
 from hangtime.solver.doctor.stance.feet import find_feet
+from hangtime.solver.doctor.upright import turn_upright
 from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.tests.helpers.clips import JUMP, load_recording
 from hangtime.tests.helpers.moving import keyed
@@ -43,6 +46,17 @@ def ridden(velocity: np.ndarray, spin: float = 0.0) -> Recording:
 
 def told(recording: Recording, *scene: SceneObject) -> list[str]:
     return [finding.kind.value for finding in diagnose(recording, scene=scene).findings]
+
+
+@pytest.mark.slow
+def test_a_ramp_of_the_scene_is_no_camera_that_was_not_level() -> None:
+    slope = Repairs(tilt=(0.0, 1.5))
+    level = platform(np.zeros(3))
+    ramp = replace(level, frames=level.frames[:1], positions=level.positions[:1])
+    ramp = replace(ramp, rotations=turn_upright(slope)[None])
+    recording = turned(jump(), slope)
+    assert "tilted floor" in told(recording, level)
+    assert "tilted floor" not in told(recording, ramp)
 
 
 @pytest.mark.slow

@@ -10,6 +10,7 @@ from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.examination.diagnose import diagnose
+from hangtime.solver.doctor.examination.ground import beneath
 from hangtime.solver.doctor.examination.repair import repaired
 from hangtime.solver.doctor.figure import figure_of
 from hangtime.solver.doctor.finding import Finding, FindingKind
@@ -23,7 +24,7 @@ RUN, HOPS = "run_2.bvh", "131_03_hop.bvh"
 
 
 def told(recording: Recording) -> Finding | None:
-    return find_tilt(recording, figure_of(recording))
+    return find_tilt(recording, figure_of(recording), beneath(recording, ()))
 
 
 def climbed(recording: Recording, metres: float, at: Sequence[float]) -> Recording:
