@@ -17,7 +17,7 @@ from hangtime.bridge.armature.traces_store import kept
 from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.bridge.files.import_clip import import_clip
 from hangtime.bridge.polish.samples import written_of
-from hangtime.bridge.repairs.analysed_state import PLACE, AnalysedState, changed_since_analysis
+from hangtime.bridge.repairs.analysed_state import AnalysedState, changed_since_analysis
 from hangtime.bridge.takes.takes import EDIT_CHANGED, AskedSettings, look_again
 from hangtime.bridge.worker_client import shared
 from hangtime.operators.solve import analyze
@@ -147,7 +147,7 @@ def test_an_armature_that_is_moved_while_it_is_analysed_is_elsewhere_than_its_co
     stood = analysed.matrix_world.copy()
     monkeypatch.setattr(analyze, "_analysed", meanwhile)
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
-    assert changed_since_analysis(analysed) == (PLACE,)
+    assert changed_since_analysis(analysed) == ("its place",)
     assert present(kept(analysed)).stood == stood
     with pytest.raises(RuntimeError, match=r"changed since the analysis \(its place\)"):
         bpy.ops.hangtime.fit()

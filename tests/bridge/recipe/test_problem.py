@@ -38,6 +38,7 @@ from hangtime.solver.data.problem import (
     Pin,
     Unseen,
 )
+from hangtime.tests.helpers.problem_strategies import NAMES
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -156,7 +157,6 @@ def test_an_empty_recipe_changes_nothing() -> None:
     assert parse_recipe("").problem == MotionProblem()
 
 
-NAMES = st.text(min_size=1, max_size=12).filter(str.strip)
 NUMBERS = st.floats(-1e6, 1e6)
 POSITIVE = st.floats(1e-3, 1e3)
 PLACES = st.tuples(NUMBERS, NUMBERS, NUMBERS)
