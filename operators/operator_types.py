@@ -61,12 +61,21 @@ class PolledOperator(OperatorMixin):
         """Invokes another of Hangtime's operators, by its bl_idname; refuses where that does."""
         if name not in list(OperatorId):
             return self.refuse(NOT_OURS.format(name))
-        category, _, own = name.partition(".")
         try:
-            getattr(getattr(bpy.ops, category), own)("INVOKE_DEFAULT", **values)
+            _of_blender(name)("INVOKE_DEFAULT", **values)
         except RuntimeError as error:
             return self.refuse(_BEFORE_SENTENCE.sub("", str(error)).strip())
         return {"FINISHED"}
+
+
+def may_go_on_with(name: str) -> bool:
+    """Whether it is one of Hangtime's operators, and one that can run now."""
+    return name in list(OperatorId) and bool(_of_blender(name).poll())
+
+
+def _of_blender(name: str) -> Any:
+    category, _, own = name.partition(".")
+    return getattr(getattr(bpy.ops, category), own)
 
 
 def _told(why: str) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import bpy
 import numpy as np
 from mathutils import Vector
@@ -9,12 +11,12 @@ from mathutils import Vector
 from ...solver.arrays import FloatArray
 from ...solver.data.faults import BadScale, NoArmature, NoBones, NonFiniteKey
 from ...solver.data.recording import Bone, Recording
-from ..accessors import armature_data, current_action, current_scene, present
+from ..accessors import armature_data, current_action, current_scene, pose_of, present
 from ..libraries import lost_character, lost_file
 from ..properties.of_actions.known_contacts import known_at
 from . import fcurves
 from .channels import proper
-from .played import leaders, require_unblended, require_unstarred, strip_time, why_no_action
+from .played import require_unblended, require_unstarred, strip_time, why_no_action
 from .poses import Poses, followed_bone, frames_per_second, metres_per_unit, sample
 
 _SAME_SCALE = 1e-4  # relative; float32 and chains of parents leave about 1e-6
@@ -30,10 +32,10 @@ def read_recording(
 ) -> Recording:
     """Sample the evaluated pose of every bone at every whole scene frame in [first, last].
 
-    The range defaults to the action's, and one that reaches beyond that ends with it, for nothing
-    moves there. beyond: s, on both sides of a stated range that are read too as far as the action
-    goes. World space, m, s; the rotations carry no scale. The scene is left as it was. The
-    recording is called what the action is called.
+    The range defaults to the action's, and one that reaches beyond its keys ends with them where
+    nothing moves the armature there. beyond: s, on both sides of a stated range that are read too
+    as far as the action goes. World space, m, s; the rotations carry no scale. The scene is left as
+    it was. The recording is called what the action is called.
 
     Raises NoArmature, LibraryMissing, NoBones, NoAction (also for an action without curves or
     without a slot for this armature), UnreadStrips, StripsOff, BlendedAction, NonFiniteKey,
@@ -56,29 +58,52 @@ def whole_frames(
     for curve in curves:
         _require_finite(armature, curve)
     action = present(current_action(armature))
+    keyed = there = _played(armature, [curve.range() for curve in curves])
     if action.use_frame_range:
-        spans = np.array([action.frame_range])
-    else:
-        spans = np.array([curve.range() for curve in curves])
-    time = strip_time(armature, action)
-    if time is not None:
-        spans = np.array([time.clipped(spans.min(), spans.max())])
-    there = float(np.ceil(spans.min() - _EPSILON)), float(np.floor(spans.max() + _EPSILON))
+        there = _played(armature, [action.frame_range])
+        keyed = min(keyed[0], there[0]), max(keyed[1], there[1])
     start = there[0] if first is None else float(np.ceil(first - _EPSILON))
     end = max(start, there[1] if last is None else float(np.floor(last + _EPSILON)))
-    if not _goes_on(armature, curves) and start <= there[1] and there[0] <= end:
-        start, end = max(start, there[0]), min(end, there[1])
+    if start <= keyed[1] and keyed[0] <= end and not _goes_on(armature, curves):
+        start, end = max(start, keyed[0]), min(end, keyed[1])
     reach = np.floor(beyond * frames_per_second(current_scene()))
     before = start if first is None else max(start - reach, there[0])
     after = end if last is None else min(end + reach, there[1])
     return np.arange(min(before, start), max(after, end) + 1.0) + 0.0  # no frame is called -0
 
 
+def _played(armature: bpy.types.Object, spans: Sequence[Vector]) -> tuple[float, float]:
+    """First and last whole frame of spans of its action's frames, as the scene plays them."""
+    first, last = min(span[0] for span in spans), max(span[1] for span in spans)
+    time = strip_time(armature, present(current_action(armature)))
+    if time is not None:
+        first, last = time.clipped(first, last)
+    return float(np.ceil(first - _EPSILON)), float(np.floor(last + _EPSILON))
+
+
 def _goes_on(armature: bpy.types.Object, curves: list[bpy.types.FCurve]) -> bool:
-    """Whether an armature may move beyond its keys: by cycles, or after another armature."""
-    modifiers = (each for curve in curves for each in curve.modifiers)
-    cyclic = any(each.type == "CYCLES" and not each.mute for each in modifiers)
-    return cyclic or bool(leaders(armature))
+    """Whether an armature may move beyond its keys: as its curves go on there, or as drivers or
+    other objects, such as a parent that moves, take it along."""
+    extended = any(
+        curve.extrapolation == "LINEAR" or any(not each.mute for each in curve.modifiers)
+        for curve in curves
+    )
+    data = armature.animation_data
+    return extended or (data is not None and len(data.drivers) > 0) or _is_taken_along(armature)
+
+
+def _is_taken_along(armature: bpy.types.Object) -> bool:
+    """Whether a parent that is animated, or a constraint to another object, moves it."""
+    parent = armature.parent
+    while parent is not None:
+        if parent.animation_data is not None or len(parent.constraints) > 0:
+            return True
+        parent = parent.parent
+    owners = (armature, *pose_of(armature).bones)
+    constraints = [each for owner in owners for each in owner.constraints if not each.mute]
+    targets = [getattr(each, "target", None) for each in constraints]
+    targets += [one.target for each in constraints for one in getattr(each, "targets", ())]
+    return any(other is not None and other != armature for other in targets)
 
 
 def last_keyed(armature: bpy.types.Object) -> float:

@@ -96,7 +96,7 @@ class HangtimeResultOptions(bpy.types.PropertyGroup):
     )
     markers: bpy.props.EnumProperty(
         name="Contact Markers",
-        description="Mark where each foot or hand comes down and goes up",
+        description="Mark where each foot, hand or knee comes down and goes up",
         items=[
             (ContactMarkers.NONE.name, "None", "No markers"),
             (ContactMarkers.ACTION.name, "Pose Markers", "Markers of the result's action"),
@@ -107,7 +107,7 @@ class HangtimeResultOptions(bpy.types.PropertyGroup):
     contact_channels: chosen(
         boolean(
             "Contact Channels",
-            "Key a custom property of the armature for each foot or hand, such as "
+            "Key a custom property of the armature for each foot, hand or knee, such as "
             "contact_left_foot: 1 while it touches and else 0",
         )
     )

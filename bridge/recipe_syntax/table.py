@@ -22,6 +22,7 @@ class NumberRange:
     holds: Callable[[float], bool]
 
 
+NUL = '"{}" holds the character NUL (\\u0000); leave that out'
 ANY_NUMBER = NumberRange("a number", lambda _: True)
 ABOVE_ZERO = NumberRange("above zero", lambda value: value > 0.0)
 NOT_NEGATIVE = NumberRange("zero or more", lambda value: value >= 0.0)
@@ -130,7 +131,7 @@ class Table:
         if not isinstance(value, str) or not value.strip():
             self.refuse(key, f'"{key}" must be a text in quotes, not {shown(value)}')
         if "\0" in value:  # which no file and no bone can be called
-            self.refuse(key, f'"{key}" holds the character NUL (\\u0000); leave that out')
+            self.refuse(key, NUL.format(key))
         return value
 
     def phase(self, key: str) -> str | None:
@@ -165,6 +166,8 @@ class Table:
             if not isinstance(name, str) or not name.strip():
                 problem = f'"{key}" must hold names in quotes, not {shown(name)}'
                 self.source.refuse((*self.place, key, i), problem)
+            if "\0" in name:
+                self.source.refuse((*self.place, key, i), NUL.format(key))
         return tuple(value)
 
     def flag(self, key: str) -> bool:

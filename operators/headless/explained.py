@@ -53,10 +53,12 @@ def ended_by_signals() -> Iterator[None]:
             signal.signal(number, interrupt)
     try:
         yield
-    except Exception:
+    except Exception as error:
         if came:
-            raise KeyboardInterrupt from None
+            raise KeyboardInterrupt from error
         raise
     finally:
         for number, handler in before.items():
-            signal.signal(number, handler)
+            # None is one that Python did not set, as Blender's own in the background: it cannot be
+            # put back from here.
+            signal.signal(number, signal.SIG_DFL if handler is None else handler)

@@ -6,7 +6,7 @@ from ...bridge.properties.constraint import HangtimeConstraint
 from ...bridge.properties.contact import HangtimeContact
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ..names import OperatorId
-from ..operator_types import OperatorResult, PolledOperator
+from ..operator_types import OperatorResult, PolledOperator, may_go_on_with
 from ..solve.common import ReadyOperator, chosen_armature, required_armature
 from ..solve.live import redraw
 
@@ -74,13 +74,9 @@ class TickNamedOperator(ReadyOperator, bpy.types.Operator):
         row = named_row(settings, self.name)
         if row is None:
             return self.refuse(NOT_LISTED.format(self.name), "WARNING")
+        if self.then and not may_go_on_with(self.then):
+            return self.go_on_with(self.then)  # which says why not
         row.used = not row.used
-        done: OperatorResult = {"FINISHED"}
-        if self.then:
-            done = self.go_on_with(self.then)
-        if "CANCELLED" in done:
-            row.used = not row.used
-            return done
         choose_named(settings, self.name)
         redraw("VIEW_3D")
-        return done
+        return self.go_on_with(self.then) if self.then else {"FINISHED"}

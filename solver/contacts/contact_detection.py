@@ -28,7 +28,8 @@ from .point_movement import MAX_SLIDE, STEP, PointMovement, even_clock, point_mo
 MIN_SEPARATION = 0.03  # s; between two contacts of one point
 CREEP_WINDOW = 0.4  # s; of the running median of a resting point's place
 HALF_CREEP = round(CREEP_WINDOW / (2.0 * STEP))  # instants
-STILL, STANDS = 0.1, 0.06  # m/s, and s for which it is so slow: a foot that stands
+STILL = 0.1  # m/s; slower is a foot that stands
+STANDS = round(0.06 / STEP)  # instants, for which it does
 REACH = 100  # instants on each side of a rest in which a point mostly leaves its place
 SINK_WINDOW = 0.2  # s; of the running low of its height, when it lands
 MIN_PIECE = 0.03  # s, of a contact that a cut leaves; a foot takes as long to land or leave
@@ -277,21 +278,20 @@ def _apart(before: _Candidate, after: _Candidate, movement: PointMovement) -> fl
     """M, level, from where a point stands as a rest comes to an end to where it does as the next
     begins, so that a small step is seen; or, of one that creeps and turns under load, and so stands
     not on both sides, between these instants themselves."""
-    first = max(before.first, before.last - HALF_CREEP)
-    last = min(after.last, after.first + HALF_CREEP)
-    start = _standing_place(movement, slice(first, before.last + 1))
-    end = _standing_place(movement, slice(after.first, last + 1))
+    back = range(before.last, max(before.first, before.last - HALF_CREEP) - 1, -1)
+    on = range(after.first, min(after.last, after.first + HALF_CREEP) + 1)
+    start, end = _standing_place(movement, back), _standing_place(movement, on)
     if start is None or end is None:
         start, end = movement.track[[before.last, after.first], :2]
     return float(np.linalg.norm(end - start))
 
 
-def _standing_place(movement: PointMovement, during: slice) -> FloatArray | None:
-    """(2,) m, where a point mostly is while it is still; None where that is not for long enough."""
-    still = np.linalg.norm(movement.velocity[during, :2], axis=1) < STILL
-    if np.sum(still) * STEP < STANDS:
-        return None
-    return np.asarray(np.median(movement.track[during][still, :2], axis=0))
+def _standing_place(movement: PointMovement, instants: range) -> FloatArray | None:
+    """(2,) m, where a point mostly is in the first of some instants in which it is still; None
+    where these are too few."""
+    places, speeds = movement.track[instants, :2], movement.velocity[instants, :2]
+    still = places[np.linalg.norm(speeds, axis=1) < STILL][:STANDS]
+    return np.asarray(np.median(still, axis=0)) if len(still) == STANDS else None
 
 
 def _within(contacts: Iterable[Contact], duration: float) -> list[Contact]:

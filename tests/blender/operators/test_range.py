@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
@@ -138,12 +140,45 @@ def test_a_range_beyond_the_take_ends_with_it_and_that_is_told(
     assert max(row.end_frame for row in rows) == last
 
 
-def test_a_take_that_repeats_is_read_beyond_its_keys(jump: bpy.types.Object) -> None:
-    first, last = current_action(jump).frame_range
+def repeats(jump: bpy.types.Object) -> None:
     for curve in curves_of(jump):
         curve.modifiers.new("CYCLES")
+
+
+def is_extrapolated(jump: bpy.types.Object) -> None:
+    for curve in curves_of(jump):
+        curve.extrapolation = "LINEAR"
+
+
+def is_carried(jump: bpy.types.Object) -> None:
+    jump.parent = bpy.data.objects.new("Lift", None)
+    jump.parent.keyframe_insert("location", frame=1.0)
+
+
+def follows(jump: bpy.types.Object) -> None:
+    constraint = jump.pose.bones["Head"].constraints.new("DAMPED_TRACK")
+    constraint.target = bpy.data.objects.new("Ball", None)
+
+
+@pytest.mark.parametrize("goes_on", [repeats, is_extrapolated, is_carried, follows])
+def test_what_goes_on_beyond_its_keys_is_read_there(
+    jump: bpy.types.Object, goes_on: Callable[[bpy.types.Object], None]
+) -> None:
+    first, last = current_action(jump).frame_range
+    goes_on(jump)
     jump.hangtime.first_frame, jump.hangtime.last_frame = int(first), int(last) + 50
     assert complete(read_wanted(jump)).frames[-1] == last + 50
+
+
+def test_keys_beyond_an_action_s_own_range_are_read_where_they_are_asked_for(
+    jump: bpy.types.Object,
+) -> None:
+    action = current_action(jump)
+    last = action.frame_range[1]
+    action.use_frame_range = True
+    action.frame_start, action.frame_end = 1.0, last - 100.0
+    jump.hangtime.first_frame, jump.hangtime.last_frame = 1, int(last) + 50
+    assert complete(read_wanted(jump)).frames[-1] == last
 
 
 def test_a_trim_keeps_to_the_take(
@@ -152,7 +187,7 @@ def test_a_trim_keeps_to_the_take(
     settings, last = jump.hangtime, int(current_action(jump).frame_range[1])
     before = settings.first_frame, settings.last_frame
     for begin in (last, last + 64):
-        with pytest.raises(RuntimeError, match=r"has no keys; they lie from frame 1 to"):
+        with pytest.raises(RuntimeError, match=r"has no keys \(they lie from frame 1 to"):
             bpy.ops.hangtime.trim(first=begin, last=last + 164)
     assert (settings.first_frame, settings.last_frame) == before
     assert bpy.ops.hangtime.trim(first=110, last=1500) == {"FINISHED"}

@@ -42,3 +42,18 @@ def test_a_signal_interrupts_an_operator_of_blender_too(number: int) -> None:
 def test_what_fails_by_itself_is_no_interrupt() -> None:
     with pytest.raises(RuntimeError), ended_by_signals():
         blender_operator(None)
+
+
+def test_a_handler_that_python_did_not_set_ends_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Blender sets its own in the background, of which Python knows nothing, and cannot put it
+    back: each command would end by that."""
+    before = signal.getsignal(signal.SIGINT)
+    try:
+        with monkeypatch.context() as patched:
+            patched.setattr(signal, "getsignal", lambda _number: None)
+            with ended_by_signals():
+                pass
+        assert signal.getsignal(signal.SIGINT) is signal.SIG_DFL
+    finally:
+        signal.signal(signal.SIGINT, before)
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)

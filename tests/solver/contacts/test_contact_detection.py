@@ -201,6 +201,16 @@ def test_a_small_step_makes_a_new_contact_however_smoothly_it_is_taken() -> None
     assert [c.place[0] for c in s.contacts] == pytest.approx([0.0, 0.08], abs=0.01)
 
 
+@pytest.mark.parametrize("creep", [0.05, 0.08, 0.11])  # m/s
+def test_a_foot_that_creeps_and_jerks_by_less_than_a_step_stays_one_contact(creep: float) -> None:
+    """At whatever speed: of its places none is taken from a tenth of a second away."""
+    jerk = 0.04 * np.clip((TIMES - 0.5) / 0.06, 0.0, 1.0)
+    x = creep * np.clip(TIMES, 0.0, 1.0) + jerk
+    s = detect_contacts(TIMES, {"Left toe": point(np.zeros_like(TIMES), x=x)})
+    around = [c for c in s.contacts if c.start < 0.7 and c.end > 0.4]
+    assert len(around) == 1
+
+
 def test_a_hand_must_rest_on_the_floor() -> None:
     for height, still_s, touches in ((0.0, 0.6, True), (0.0, 0.1, False), (0.12, 0.6, False)):
         away = np.clip(np.abs(TIMES - 1.5) - still_s / 2, 0.0, None)
