@@ -38,6 +38,7 @@ def toy() -> Task:
 NEAREST = 0.0134  # what three solvers of different kinds agree on
 
 
+@pytest.mark.slow
 def test_ipopt_solves_the_toy() -> None:
     found = ipopt_peer.solve(toy(), LIMIT)
     assert found.solved

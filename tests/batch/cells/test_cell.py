@@ -145,6 +145,7 @@ def test_a_clip_is_analysed_once_wherever_copies_of_it_lie(
     assert len([args for args in reads if args[0].is_relative_to(tmp_path)]) == 1
 
 
+@pytest.mark.slow
 def test_a_fit_that_is_damaged_or_names_a_program_is_none(batch: Path) -> None:
     def read(content: bytes) -> str:
         with pytest.raises(Unreadable) as caught:

@@ -227,6 +227,7 @@ def test_of_the_frames_that_are_named_those_count_that_are_left() -> None:
         load(Clip(mocap_path(CLIP)), problem, Stages(StringIO()), repairs)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("chosen", "remedy", "left"),
     [

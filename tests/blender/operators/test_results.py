@@ -60,6 +60,7 @@ def without(armature: bpy.types.Object, *bones: str) -> None:
     bpy.ops.object.mode_set(mode="OBJECT")
 
 
+@pytest.mark.slow
 def test_the_fit_says_in_words_how_near_it_is(analysed: bpy.types.Object) -> None:
     assert bpy.ops.hangtime.fit() == {"FINISHED"}
     first, second, third = analysed.hangtime.fit_quality.splitlines()

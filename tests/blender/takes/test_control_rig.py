@@ -153,6 +153,7 @@ def test_a_switch_between_forward_and_inverse_kinematics_is_followed() -> None:
     assert posed.off[:2].max() < 1e-3
 
 
+@pytest.mark.slow
 def test_a_rig_made_by_hand_with_feet_and_poles_is_posed_through_these() -> None:
     rig = ik_rig()
     hips, stand = rig.pose.bones["hips"], rig.pose.bones["stand.L"]
@@ -253,6 +254,7 @@ def test_feet_are_carried_along_however_their_locations_count(local: bool) -> No
     np.testing.assert_allclose(after, before.heads[0] @ turn.T + shift, atol=1e-5)
 
 
+@pytest.mark.slow
 def test_controls_are_tried_once_and_anew_where_the_rig_was_changed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

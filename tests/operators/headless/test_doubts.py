@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hangtime.operators.headless.doubts import doubts_about
 from hangtime.operators.words.doubt_text import MOST_DAMAGES, damage_doubts
 from hangtime.solver.data.problem import MotionProblem, Pin
@@ -32,6 +33,7 @@ def test_of_a_clean_recording_nothing_is_told() -> None:
     assert told(load_recording(JUMP)) == []
 
 
+@pytest.mark.slow
 def test_a_frame_that_no_fit_can_follow_is_told_with_where_its_remedy_is() -> None:
     recording = leaping()
     damage, remedy = told(recording)
@@ -53,6 +55,7 @@ def test_ground_of_the_scene_may_be_anywhere() -> None:
     assert told(lifted, replace(USUAL, scene=(stage,))) == []
 
 
+@pytest.mark.slow
 def test_a_landing_that_nobody_reaches_is_told_at_the_stated_stature() -> None:
     asked = replace(USUAL, pins=(Pin("Landing", "ground 2", offset=(0.0, 0.0, 1.5)),))
     assert told(load_recording(JUMP), asked) == []

@@ -335,6 +335,7 @@ def test_every_force_row_knows_its_own_unknowns() -> None:
         np.testing.assert_allclose(dense[:, block, column], numeric, atol=2e-6)
 
 
+@pytest.mark.slow
 def test_efforts_of_an_adapted_jump_leave_nothing_at_the_root() -> None:
     fitted = fitted_hop()
     adapted = adapt(fitted, MotionProblem(pins=(Pin("landing", "ground 2", offset=(0.2, 0, 0)),)))

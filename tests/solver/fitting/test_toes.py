@@ -1,6 +1,7 @@
 """Toes come back from a push-off as a person's do."""
 
 import numpy as np
+import pytest
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.problem import MotionProblem
@@ -13,6 +14,7 @@ STEP = 1 / 240  # s
 FASTEST = 700.0
 
 
+@pytest.mark.slow
 def test_toes_do_not_snap_back_after_a_push_off() -> None:
     analysis = analyse(load_recording("run_2.bvh"), MotionProblem())
     motion = fit(analysis.performance, analysis.schedule).motion

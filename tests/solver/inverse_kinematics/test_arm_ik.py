@@ -36,6 +36,7 @@ def hang(height: float) -> MotionProblem:
     return MotionProblem(requests=Requests(points=tuple(hands), holds=(hold,)))
 
 
+@pytest.mark.slow
 def test_arms_reach_for_a_bar_within_their_ranges() -> None:
     setup = set_up(fitted_hop(), hang(0.8))
     human, start = setup.human, setup.start

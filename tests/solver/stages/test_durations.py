@@ -127,6 +127,7 @@ def test_a_hop_that_is_carried_as_a_whole_keeps_its_times() -> None:
     assert durations(adapt(whole_hop(), MotionProblem(pins=pins))) == pytest.approx(recorded())
 
 
+@pytest.mark.slow
 def test_a_turn_alone_keeps_its_times() -> None:
     setup = set_up(whole_hop(), to(0.0, turn=np.pi / 2))
     assert setup.context.timeline.unchanged

@@ -28,6 +28,7 @@ def pinned(*phases: str) -> MotionProblem:
     return MotionProblem(pins=tuple(Pin(phase, phase, offset=FURTHER) for phase in phases))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("phases", "solved"),
     [

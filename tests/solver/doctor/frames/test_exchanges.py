@@ -47,6 +47,7 @@ def on_other_axes(recording: Recording) -> Recording:
     return replace(recording, bones=tuple(bones), rotations=rotations)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("limbs", LIMBS)
 def test_frames_and_bone_are_told_and_nothing_that_follows_from_it(limbs: Mend) -> None:
     """Neither a jump, nor another clock, nor that something carries the body unseen."""
