@@ -52,17 +52,24 @@ def test_a_step_that_raises_the_violation_is_taken_back_where_none_may_follow() 
     """Near the end one may, if the next makes up for it: far from any motion some do."""
     setup = set_up(fitted_hop(), MotionProblem())
     feasible = setup.feasible_set(setup.start.transcription)
-    x, angles = setup.start.x.copy(), feasible.transcription.layout.angles
-    x[:, angles] += 0.1 * np.random.default_rng(0).normal(size=x[:, angles].shape)
-    told: list[FloatArray] = []
-    whole = restore(
-        feasible, setup.metric, x, stage="test", progress=lambda _, motion: told.append(motion.x)
-    )
-    off = [step.violation for step in whole.steps]
-    raised = [i for i, (a, b) in enumerate(pairwise(off)) if b > a and a < NEARLY_FEASIBLE]
-    # Others lower what is left of all rows, though not of the worst.
-    watched = [i for i in raised if feasible.violation(told[i]) == pytest.approx(off[i])]
-    assert watched
+    angles = feasible.transcription.layout.angles
+
+    def restored(seed: int) -> tuple[FloatArray, list[float], list[FloatArray], list[int]]:
+        """From some start: it, violations, unknowns after each step, and steps that raised it."""
+        x = setup.start.x.copy()
+        x[:, angles] += 0.1 * np.random.default_rng(seed).normal(size=x[:, angles].shape)
+        told: list[FloatArray] = []
+        whole = restore(
+            feasible, setup.metric, x, stage="test", progress=lambda _, found: told.append(found.x)
+        )
+        off = [step.violation for step in whole.steps]
+        raised = [i for i, (a, b) in enumerate(pairwise(off)) if b > a and a < NEARLY_FEASIBLE]
+        # Others lower what is left of all rows, though not of the worst.
+        watched = [i for i in raised if feasible.violation(told[i]) == pytest.approx(off[i])]
+        return x, off, told, watched
+
+    # From most starts none is.
+    x, off, told, watched = next(found for found in map(restored, range(8)) if found[-1])
     for i in watched:
         found = restore(feasible, setup.metric, x, stage="test", max_steps=i + 1)
         assert found.violation == pytest.approx(off[i])
