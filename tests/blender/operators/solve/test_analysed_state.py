@@ -31,7 +31,7 @@ def test_what_an_action_constraint_lists_of_slots_is_no_change(analysed: bpy.typ
     """Which the artist may select, and add."""
     action, held = analysed.animation_data.action, analysed.pose.bones["LeftHand"].constraints
     if not hasattr(action, "slots"):
-        pytest.skip("before 4.4 actions have no slots")
+        pytest.skip("actions have no slots before Blender 4.4")
     held.new("ACTION").action = action
     before = AnalysedState.of(analysed)
     action.slots[0].select = not action.slots[0].select
