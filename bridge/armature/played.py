@@ -52,8 +52,8 @@ def why_no_action(owner: bpy.types.Object) -> Fault:
     data, strips = owner.animation_data, visible_strips(owner)
     unseen = [strip for track in data.nla_tracks for strip in track.strips] if data else []
     if data is None or data.action is not None or not unseen:
-        followed = leaders(owner)
-        return PosedByOthers(owner.name, followed) if followed else NoAction(owner.name)
+        leaders = _leaders(owner)
+        return PosedByOthers(owner.name, leaders) if leaders else NoAction(owner.name)
     if not data.use_nla:
         return StripsOff(owner.name, tuple(strip.name for strip in unseen))
     silent = MUTED if len(unseen) == 1 else ALL_MUTED
@@ -63,12 +63,21 @@ def why_no_action(owner: bpy.types.Object) -> Fault:
     return UnreadStrips(owner.name, tuple(strip.name for strip in strips or unseen), why)
 
 
-def leaders(owner: bpy.types.Object) -> tuple[str, ...]:
+def _leaders(owner: bpy.types.Object) -> tuple[str, ...]:
     """Other armatures after which constraints pose an armature's bones, as in a retarget."""
     each = (c for bone in pose_of(owner).bones for c in bone.constraints if not c.mute)
-    things = (getattr(constraint, "target", None) for constraint in each)
+    things = (thing for constraint in each for thing, _ in leaders_of(constraint))
     led = (t.name for t in things if t is not None and t != owner and t.type == "ARMATURE")
     return tuple(dict.fromkeys(led))
+
+
+def leaders_of(constraint: bpy.types.Constraint) -> Iterator[tuple[bpy.types.Object | None, str]]:
+    """Objects that a constraint follows, with the bone where it is one's."""
+    if isinstance(constraint, bpy.types.ArmatureConstraint):
+        yield from ((each.target, each.subtarget) for each in constraint.targets)
+        return
+    for thing, bone in (("target", "subtarget"), ("pole_target", "pole_subtarget")):
+        yield getattr(constraint, thing, None), getattr(constraint, bone, "")
 
 
 def wrong_speed(owner: bpy.types.Object, action: bpy.types.Action, told: UnseenSupport) -> Fault:

@@ -16,7 +16,7 @@ from ..libraries import lost_character, lost_file
 from ..properties.of_actions.known_contacts import known_at
 from . import fcurves
 from .channels import proper
-from .played import require_unblended, require_unstarred, strip_time, why_no_action
+from .played import leaders_of, require_unblended, require_unstarred, strip_time, why_no_action
 from .poses import Poses, followed_bone, frames_per_second, metres_per_unit, sample
 
 _SAME_SCALE = 1e-4  # relative; float32 and chains of parents leave about 1e-6
@@ -101,9 +101,8 @@ def _is_taken_along(armature: bpy.types.Object) -> bool:
         parent = parent.parent
     owners = (armature, *pose_of(armature).bones)
     constraints = [each for owner in owners for each in owner.constraints if not each.mute]
-    targets = [getattr(each, "target", None) for each in constraints]
-    targets += [one.target for each in constraints for one in getattr(each, "targets", ())]
-    return any(other is not None and other != armature for other in targets)
+    followed = (thing for each in constraints for thing, _ in leaders_of(each))
+    return any(thing is not None and thing != armature for thing in followed)
 
 
 def last_keyed(armature: bpy.types.Object) -> float:

@@ -8,6 +8,7 @@ import bpy
 
 from ..accessors import armature_data, pose_of
 from ..armature import fcurves
+from ..armature.played import leaders_of
 from ..armature.pose_basis import carrier_of
 from ..armature.write import rotation_channel
 
@@ -122,15 +123,6 @@ def followed_by(armature: bpy.types.Object, bones: Iterable[str]) -> set[str]:
         leaders = (leader for each in bone.constraints for leader in leaders_of(each))
         waiting += [name for thing, name in leaders if thing == armature]
     return found
-
-
-def leaders_of(constraint: bpy.types.Constraint) -> Iterator[tuple[bpy.types.Object | None, str]]:
-    """Objects that a constraint follows, with the bone where it is one's."""
-    if isinstance(constraint, bpy.types.ArmatureConstraint):
-        yield from ((each.target, each.subtarget) for each in constraint.targets)
-        return
-    for thing, bone in (("target", "subtarget"), ("pole_target", "pole_subtarget")):
-        yield getattr(constraint, thing, None), getattr(constraint, bone, "")
 
 
 def stretching(armature: bpy.types.Object) -> set[str]:

@@ -11,9 +11,10 @@ import numpy as np
 from ...solver.arrays import FloatArray
 from ...solver.data.faults import NoControls, PulledFromOutside
 from ..armature.incremental import Incremental
+from ..armature.played import leaders_of
 from ..armature.poses import sample
 from .control_rig import found_controls
-from .driven import chain_of, constraints_of, driven_of, leaders_of
+from .driven import chain_of, constraints_of, driven_of
 from .followed import acting
 from .needed import LEVER
 from .targets import parents_of

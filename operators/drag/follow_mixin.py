@@ -25,7 +25,7 @@ from ...solver.worker.protocol import Answer, Failed, Followed, Progress
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
 from ..solve.adapt import ask_for, followed_problem, unanalysed
-from ..solve.common import failed, required_armature
+from ..solve.common import failed, required_armature, said
 from ..solve.live import clear_header, live, redraw_viewports, redraw_views
 from ..solve.session import Asked, session
 from ..solve.task import clear_status, closes
@@ -107,6 +107,11 @@ class FollowedDrag(PolledOperator):
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         self._armature = required_armature(context)
         self._press = Press.of(context, event, click=self.release_confirm)
+        try:
+            if self._press.dragging:  # a click on a handle chooses it all the same
+                self._require_as_analysed(context)
+        except Fault as fault:
+            return self.refuse(said(fault))
         why = ELSEWHERE if context.region_data is None else self.take(context)
         if why is not None:
             return self.refuse(why)
@@ -219,14 +224,18 @@ class FollowedDrag(PolledOperator):
 
     # -- the motion that follows ---------------------------------------------------------------
 
+    def _require_as_analysed(self, context: bpy.types.Context) -> None:
+        """What can be told without reading. Raises TimeStretched, ChangedMeanwhile."""
+        require_unstretched(present(context.scene))
+        require_in_place(self._armature)
+
     def _follow(self, context: bpy.types.Context) -> Incremental[None]:
         """Has the worker follow what is dragged, from the press on, though a click shows no ghost:
         of recording and scene as they were read last. They are read again, in parts, once it has
         told anything, for the first ghost waits for no reading. Raises TimeStretched,
         ChangedMeanwhile where it is another recording or elsewhere, AimedBone.
         """
-        require_unstretched(present(context.scene))
-        require_in_place(self._armature)
+        self._require_as_analysed(context)
         reading, asked = ask_for(context), self._read_before(context)
         if asked is None:
             asked = yield from reading

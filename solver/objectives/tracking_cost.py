@@ -123,8 +123,8 @@ class _NodeErrors:
     rest: FloatArray | None
 
 
-def _slower(character: Character, acceleration_time: float) -> FloatArray:
-    """(n_angles,) factors of angular accelerations."""
+def _acceleration_scale(character: Character, acceleration_time: float) -> FloatArray:
+    """(n_angles,) by which accelerations of the joint angles count more, squared in the cost."""
     factors = np.ones(character.n_angles)
     for body, joint in zip(character.bodies, character.joints, strict=True):
         if body.part is Part.TOE:
@@ -161,7 +161,7 @@ class TrackingCost:
         self._load = weights.com_acceleration / STANDARD_GRAVITY**2
         self._force_metric = self._made_force_metric()
         n = transcription.character.n_angles
-        self._slower = _slower(transcription.character, weights.acceleration_time)
+        self._scale = _acceleration_scale(transcription.character, weights.acceleration_time)
         self._price = np.broadcast_to(0.0, (len(times), n, n))
         if price is not None:
             self._price = price.metric(forward_kinematics(transcription.character, target.angles))
@@ -196,7 +196,7 @@ class TrackingCost:
             shape=relative - (markers - centre[:, None]),
             com=com - centre,
             angles=motion[:, t.layout.angles] - target.angles[nodes],
-            acceleration=self._slower * (second[:, t.layout.angles] - target.accelerations[nodes]),
+            acceleration=self._scale * (second[:, t.layout.angles] - target.accelerations[nodes]),
             com_acceleration=second[:, t.layout.com] - target.com_acceleration[nodes],
             turning=self._by_range * self._price[nodes],
             rest=None if self._rest is None else self._rest[nodes],
@@ -268,14 +268,14 @@ class TrackingCost:
         slope[:, angles] = at.posed.points_gradient(self.points, pull)
         slope[:, angles] += np.einsum("njk,nk->nj", at.turning, at.angles)
         slope[:, com] = p.position * at.world.mean(axis=1) + p.com * at.com
-        curvature = self._smooth * self._slower * np.einsum("njk,nk->nj", angle, at.acceleration)
+        curvature = self._smooth * self._scale * np.einsum("njk,nk->nj", angle, at.acceleration)
         first = self.transcription.basis.first_coefficient[spans]
         nodes = slice(GAUSS_NODES * spans.start, GAUSS_NODES * spans.stop)
         if at.rest is not None:
             self._expand_rest(at, at.rest, metric, slope)
         damping = p.damping * self._price[nodes]
         metric[:, angles, angles] += damping
-        accelerated = (angle + damping) * np.multiply.outer(self._slower, self._slower)
+        accelerated = (angle + damping) * np.multiply.outer(self._scale, self._scale)
         self._add_windows(at, metric, accelerated, first, matrix)
         value, second = at.values
         local = (at.weight[:, None] * value)[..., None] * slope[:, None]

@@ -29,6 +29,18 @@ def make_rig() -> bpy.types.Object:
     return armature
 
 
+def make_stances(forward: tuple[float, float, float]) -> bpy.types.Object:
+    """The same, chosen in the panel; each contact is so many metres along X as its phase counts,
+    and in a stance of its own, whose forward axis is given."""
+    armature = make_rig()
+    bpy.context.scene.hangtime.armature = armature
+    for row in armature.hangtime.contacts:
+        row.found_at = row.at = (float(row.name[-1]), 0.0, 0.0)
+        stance = armature.hangtime.stances.add()
+        stance.name, stance.forward_axis = row.phase, forward
+    return armature
+
+
 def added(
     armature: bpy.types.Object, kind: ConstraintKind, *bones: str, **fields: object
 ) -> bpy.types.PropertyGroup:

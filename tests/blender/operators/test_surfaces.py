@@ -32,7 +32,7 @@ from hangtime.solver.doctor.repairs import Repairs
 from hangtime.solver.scene.checks import check_scene
 from hangtime.solver.scene.triangle_mesh import placed_mesh
 from hangtime.tests.blender.helpers.actions import curves_of
-from hangtime.tests.blender.helpers.rows import make_rig
+from hangtime.tests.blender.helpers.rows import make_stances
 from hangtime.tests.blender.helpers.skins import make_skin
 from hangtime.tests.blender.helpers.solids import add_row, make_box, read
 from mathutils.bvhtree import BVHTree
@@ -49,13 +49,7 @@ pytestmark = pytest.mark.usefixtures("_enabled")
 @pytest.fixture
 def rig() -> bpy.types.Object:
     """Animated, with a heel's contact on the ground before and after a flight."""
-    armature = make_rig()
-    bpy.context.scene.hangtime.armature = armature
-    for row in armature.hangtime.contacts:
-        row.found_at = row.at = (float(row.name[-1]), 0.0, 0.0)
-        stance = armature.hangtime.stances.add()
-        stance.name, stance.forward_axis = row.phase, (1.0, 0.0, 0.0)
-    return armature
+    return make_stances((1.0, 0.0, 0.0))
 
 
 def select(*solids: bpy.types.Object) -> None:

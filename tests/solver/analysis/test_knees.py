@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from hangtime.devtools.checks.mujoco_check import check_motion
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.contacts.footfalls import footfalls
 from hangtime.solver.data.constants import STANDARD_GRAVITY
@@ -58,6 +59,9 @@ def test_knees_carry_the_body_in_the_fit() -> None:
     up = {c.contact.point: forces[c.point, 2] / weight for c in transcription.contacts}
     assert sum(up.values()) == pytest.approx(1.0, abs=0.01)
     assert up["Left knee"] + up["Right knee"] > 0.6
+    left, *_ = check_motion(fitted.motion)  # by MuJoCo, between the nodes too
+    assert left.worst("force", flying=False) < 1e-3
+    assert left.worst("moment", flying=False) < 1e-3
 
 
 def test_a_knee_is_of_its_foots_step() -> None:

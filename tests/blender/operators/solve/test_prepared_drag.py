@@ -265,6 +265,21 @@ def test_nothing_is_dragged_of_an_armature_that_is_shown_otherwise_than_it_was_a
     assert not session().running
 
 
+def test_a_button_begins_no_drag_of_an_armature_that_was_moved(
+    analysed, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    analysed.location.x += 1.0
+    bpy.context.view_layer.update()
+    by_button = Press((0.0, 0.0), slack=3.0, dragging=True)
+    monkeypatch.setattr(Press, "of", lambda *_, **__: by_button)
+    drag = Drag(analysed)
+    drag.release_confirm = False
+    assert drag.invoke(bpy.context, SimpleNamespace()) == {"CANCELLED"}
+    assert "its place" in drag.refused[0]
+    assert not session().running
+
+
 def test_a_drag_of_what_was_not_analysed_is_put_back(analysed, asked: Asked) -> None:
     row, drag = analysed.hangtime.contacts["Left toe 2"], Drag(analysed)
     was = Vector(row.at)

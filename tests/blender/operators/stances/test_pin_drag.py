@@ -13,7 +13,7 @@ from hangtime.operators.drag.drag_state import Axis, PinDrag
 from hangtime.operators.drag.follow_mixin import FollowedDrag
 from hangtime.operators.drag.mouse import Press
 from hangtime.operators.drag.pin_operator import DragPinOperator
-from hangtime.tests.blender.helpers.rows import added, make_rig
+from hangtime.tests.blender.helpers.rows import added, make_stances
 from hangtime.tests.blender.helpers.solids import add_row, make_box
 
 pytestmark = pytest.mark.usefixtures("_enabled")
@@ -30,13 +30,7 @@ Pin = type("Pin", (FollowedDrag,), OWN)
 @pytest.fixture
 def rig() -> bpy.types.Object:
     """With a contact on the ground before and after a flight."""
-    armature = make_rig()
-    bpy.context.scene.hangtime.armature = armature
-    for row in armature.hangtime.contacts:
-        row.found_at = row.at = (float(row.name[-1]), 0.0, 0.0)
-        stance = armature.hangtime.stances.add()
-        stance.name, stance.forward_axis = row.phase, (0.0, 1.0, 0.0)
-    return armature
+    return make_stances((0.0, 1.0, 0.0))
 
 
 def held(armature: bpy.types.Object, contact: int = -1, constraint: int = -1) -> FollowedDrag:
