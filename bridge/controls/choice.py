@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 
 import bpy
 import numpy as np
@@ -12,7 +13,7 @@ from ...solver.arrays import BoolArray, FloatArray
 from ..armature import fcurves
 from .needed import Effects, needed
 from .posing import Posing
-from .responses import Dof, Freedom, Responses, free_dofs, measured
+from .responses import Dof, Freedom, Responses, Trial, disjoint, free_dofs, measured
 
 PART = 0.05  # of a turn, by which a body that follows in full may miss it
 WHOLE = 0.6  # of the bodies, which more than legs and pelvis are
@@ -29,28 +30,39 @@ class Group:
     dofs: tuple[int, ...]
 
 
-def felt_controls(posing: Posing, bases: FloatArray) -> list[int]:
-    """Controls that move any body, by one try each of all their channels."""
+def moved_by_controls(posing: Posing, bases: FloatArray) -> FloatArray:
+    """(C, B + C) how much each control moves bodies and controls, by one try each of all its
+    channels: the largest change of a pose's entries."""
     for index, basis in enumerate(bases):
         posing.pose(index, basis)
-    before, found = posing.look().bodies, []
+    before, found = posing.look(), []
     for index, name in enumerate(posing.controls):
-        own = list(free_dofs(posing.armature, [name]))
         basis = bases[index]
-        for dof in own:
+        for dof in free_dofs(posing.armature, [name]):
             basis = dof.applied(basis, dof.step)
         posing.pose(index, basis)
-        if np.abs(posing.look().bodies - before).max() > 1e-5:
-            found.append(index)
+        after = posing.look()
+        changes = np.concatenate([after.bodies - before.bodies, after.controls - before.controls])
+        found.append(np.abs(changes).max((1, 2)))
         posing.pose(index, bases[index])
-    return found
+    return np.stack(found)
 
 
-def all_responses(posing: Posing, bases: FloatArray) -> Responses:
-    """Responses of every dof of every control, one after the other."""
-    every = np.ones(len(posing.bodies), bool)
-    dofs = free_dofs(posing.armature, posing.controls)
-    return measured(posing, bases, [[(dof, every)] for dof in dofs])
+def all_responses(posing: Posing, bases: FloatArray, moved: BoolArray) -> Responses:
+    """Responses of every dof of every control; at once those of controls that move nothing in
+    common. moved: (C, B + C) the bodies and controls that each moves there at all."""
+    count, dofs = len(posing.bodies), list(free_dofs(posing.armature, posing.controls))
+    trials = [Trial(d, moved[d.control, :count], moved[d.control, count:]) for d in dofs]
+    of_control = [[t for t in trials if t.dof.control == c] for c in range(len(bases))]
+    own = np.eye(len(bases), len(bases) + count, count, dtype=bool)
+    groups = [
+        [trial for trial in together if trial is not None]
+        for controls in disjoint(list(moved | own))
+        for together in zip_longest(*(of_control[c] for c in controls))
+    ]
+    found = measured(posing, bases, groups)
+    order = [found.dofs.index(dof) for dof in dofs]
+    return found.part(order, range(len(bases)))
 
 
 def used_groups(posing: Posing, looks: Sequence[tuple[Responses, Effects]]) -> list[Group]:

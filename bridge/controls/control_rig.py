@@ -16,7 +16,7 @@ from ...solver.data.recording import PoseTrack
 from ..accessors import current_scene
 from ..armature.incremental import Incremental, in_slices
 from ..armature.poses import Poses, metres_per_unit, sample
-from .choice import Group, all_responses, felt_controls, used_groups
+from .choice import Group, all_responses, moved_by_controls, used_groups
 from .driven import candidates
 from .followed import FAINT, influences_over, rig_digest, telling_frames
 from .inverse import Inverse, Inverted
@@ -25,6 +25,7 @@ from .posing import Posing
 from .responses import Freedom, Responses
 from .targets import move_of_pelvis, moved_bases, parents_of, targets_of
 
+FELT = 1e-5  # of a pose's entries, by which a control must move a body to be one of its own
 _REMEMBERED = 8  # rigs, of a shot's characters
 _Tried = tuple[int, tuple[str, ...], str, bytes, bytes]
 
@@ -109,18 +110,21 @@ def _tried(
 ) -> Incremental[ControlRig]:
     """The controls of bodies, tried at frames (L,). Raises NoControls."""
     names = candidates(armature, bodies)
-    felt: set[str] = set()
-    found = yield from in_slices(at, partial(_felt, armature, names, bodies), showing, fewest=1)
-    for part in found:
-        felt.update(part)
-    names = [name for name in names if name in felt]
     if not names:
         raise NoControls(bodies)
-    posing = Posing(armature, names, bodies)
+    every = Posing(armature, names, bodies)
+    found = yield from in_slices(at, partial(_moved, every), showing, fewest=1)
+    moved, count = np.concatenate(found), len(bodies)
+    felt = (moved[:, :, :count] > FELT).any((0, 2))
+    if not felt.any():
+        raise NoControls(bodies)
+    posing = Posing(armature, np.array(names)[felt].tolist(), bodies)
     with showing():
         parents = parents_of(armature, sample(armature, at[:1]), bodies)
     yield None
-    looked = yield from in_slices(at, partial(_looks, posing, parents), showing, fewest=1)
+    kept = np.append(np.ones(count, bool), felt)
+    tried = dict(zip(at.tolist(), moved[:, felt][:, :, kept] > 0.0, strict=True))
+    looked = yield from in_slices(at, partial(_looks, posing, parents, tried), showing, fewest=1)
     looks = [look for part in looked for look in part]
     groups = used_groups(posing, [(look.responses, look.effects) for look in looks])
     if not groups:  # they move something, but nothing that hangs together
@@ -136,25 +140,26 @@ class _Look:
     effects: Effects
 
 
-def _felt(
-    armature: bpy.types.Object, names: list[str], bodies: tuple[str, ...], frames: FloatArray
-) -> set[str]:
-    posing = Posing(armature, names, bodies)
-    found: set[str] = set()
+def _moved(posing: Posing, frames: FloatArray) -> FloatArray:
+    """(T, C, B + C) how much each control moves bodies and controls."""
+    found = []
     with posing.kept():
         for frame in frames:
             posing.go_to(float(frame))
-            found.update(names[i] for i in felt_controls(posing, posing.bases()))
-    return found
+            found.append(moved_by_controls(posing, posing.bases()))
+    return np.stack(found)
 
 
-def _looks(posing: Posing, parents: list[int], frames: FloatArray) -> list[_Look]:
+def _looks(
+    posing: Posing, parents: list[int], moved: dict[float, BoolArray], frames: FloatArray
+) -> list[_Look]:
+    """moved: (C, B + C) what each control moves, by frame."""
     looks = []
     with posing.kept():
-        for frame in frames:
-            posing.go_to(float(frame))
+        for frame in frames.tolist():
+            posing.go_to(frame)
             bases, world = posing.bases(), posing.object_to_world()
-            responses, posed = all_responses(posing, bases), posing.look()
+            responses, posed = all_responses(posing, bases, moved[frame]), posing.look()
             unit = metres_per_unit(current_scene()) * float(np.cbrt(np.linalg.det(world[:3, :3])))
             effects = effects_at(responses, posed, bases, parents, unit)
             looks.append(_Look(responses, effects))

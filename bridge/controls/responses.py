@@ -161,34 +161,39 @@ def free_dofs(armature: bpy.types.Object, controls: Sequence[str]) -> Iterator[D
             yield Dof(index, Freedom.SIZE, 0)
 
 
-def measured(
-    posing: Posing, bases: FloatArray, groups: Iterable[Sequence[tuple[Dof, BoolArray]]]
-) -> Responses:
-    """Responses at the scene's frame with pose bases (C, 4, 4).
+@dataclass(frozen=True)
+class Trial:
+    """A dof that is tried, and what can follow it: bodies (B,) and controls (C,)."""
 
-    groups: dofs that may be tried at once, each with the bodies (B,) that can be its followers.
-    """
+    dof: Dof
+    bodies: BoolArray
+    controls: BoolArray
+
+
+def measured(posing: Posing, bases: FloatArray, groups: Iterable[Sequence[Trial]]) -> Responses:
+    """Responses at the scene's frame with pose bases (C, 4, 4). groups: what is tried at once."""
     for index, basis in enumerate(bases):
         posing.pose(index, basis)
     before = posing.look()
     dofs, turns, shifts, follow, moved = [], [], [], [], []
     for group in groups:
-        for dof, _ in group:
+        for dof in (trial.dof for trial in group):
             posing.pose(dof.control, dof.applied(bases[dof.control], dof.step))
         after = posing.look()
         turned = rotation_vector(_turned(before, after))
         apart = after.bodies[:, :3, 3] - before.bodies[:, :3, 3]
         change = np.abs(after.controls - before.controls).max((1, 2))
-        for dof, of in group:
+        for trial in group:
+            dof = trial.dof
             posing.pose(dof.control, bases[dof.control])
             turn, shift = turned / dof.step, apart / dof.step
             felt = np.maximum(np.abs(turn).max(1), np.abs(shift).max(1)) > FELT
             dofs.append(dof)
             turns.append(turn)
             shifts.append(shift)
-            follow.append(felt & of)
+            follow.append(felt & trial.bodies)
             others = np.arange(len(change)) != dof.control
-            moved.append((change / dof.step > FELT) & others)
+            moved.append((change / dof.step > FELT) & others & trial.controls)
     keep, axes = np.stack(follow), axes_of(dofs, before, bases)
     turns_of, kept = np.stack(turns), keep[..., None]
     shifts_of = np.stack(shifts) - _rigid(dofs, turns_of, before)
@@ -206,12 +211,13 @@ def _turned(before: Posed, after: Posed) -> FloatArray:
     return after.body_turns @ np.swapaxes(before.body_turns, 1, 2)
 
 
-def apart(responses: Responses) -> list[list[tuple[Dof, BoolArray]]]:
+def apart(responses: Responses) -> list[list[Trial]]:
     """The dofs in as few groups as come by themselves of which no two share a follower."""
-    dofs, follow = responses.dofs, responses.follow
-    controls = np.eye(1 + max(dof.control for dof in dofs), dtype=bool)
-    moved = [np.append(of, controls[dof.control]) for dof, of in zip(dofs, follow, strict=True)]
-    return [[(dofs[d], follow[d]) for d in group] for group in disjoint(moved)]
+    every = zip(responses.dofs, responses.follow, responses.moved, strict=True)
+    trials = [Trial(*each) for each in every]
+    own = np.eye(responses.moved.shape[1], dtype=bool)
+    moved = [np.append(each.bodies, own[each.dof.control]) for each in trials]
+    return [[trials[d] for d in group] for group in disjoint(moved)]
 
 
 def disjoint(sets: Sequence[BoolArray]) -> list[list[int]]:

@@ -7,7 +7,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from hangtime.bridge.controls.choice import all_responses
+from hangtime.bridge.controls.choice import all_responses, moved_by_controls
 from hangtime.bridge.controls.needed import Effects, needed
 from hangtime.bridge.controls.posing import Posing
 from hangtime.tests.blender.helpers.ik_rig import ik_rig
@@ -22,7 +22,7 @@ def test_a_step_corrects_what_it_showed_and_nothing_that_does_not_follow() -> No
     with posing.kept():
         posing.go_to(1.0)
         bases, before = posing.bases(), posing.look()
-        found = all_responses(posing, bases)
+        found = all_responses(posing, bases, moved_by_controls(posing, bases) > 0.0)
         rise = next(d for d, dof in enumerate(found.dofs) if dof.control == 1 and dof.shifts)
         step = np.eye(len(found.dofs))[rise] * SHIFT
         posing.pose(1, found.dofs[rise].applied(bases[1], SHIFT))
@@ -37,6 +37,23 @@ def test_a_step_corrects_what_it_showed_and_nothing_that_does_not_follow() -> No
     others = [d for d in range(len(found.dofs)) if d != rise]
     np.testing.assert_array_equal(corrected.shifts[others], found.shifts[others])
     np.testing.assert_array_equal(corrected.shifts[~found.follow], 0.0)
+
+
+def test_what_moves_nothing_in_common_is_tried_at_once_and_answers_as_it_does_alone() -> None:
+    rig = ik_rig()
+    posing = Posing(rig, ["stand.L", "stand.R", "chest"], ["shin.L", "shin.R", "hand.L"])
+    with posing.kept():
+        posing.go_to(1.0)
+        bases = posing.bases()
+        moved = moved_by_controls(posing, bases) > 0.0
+        at_once = all_responses(posing, bases, moved)
+        alone = all_responses(posing, bases, np.ones_like(moved))
+    assert not (moved[0] & moved[1]).any()
+    assert at_once.dofs == alone.dofs
+    for name in ("turns", "shifts"):
+        np.testing.assert_allclose(getattr(at_once, name), getattr(alone, name), atol=1e-4)
+    np.testing.assert_array_equal(at_once.follow, alone.follow)
+    np.testing.assert_array_equal(at_once.moved, alone.moved)
 
 
 @pytest.mark.parametrize("unit", [1.0, 1e-12])
