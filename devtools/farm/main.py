@@ -146,7 +146,7 @@ def killed(scratch: Path, package: Path, *, quick: bool) -> Found:
         workers += outcome.killed
     yield DASK_KILLED, workers
     yield "Dask, 2 of 4 workers killed: cells lost, doubled or different", bad
-    bad = killed_and_resumed(scratch, package, expected, chance, 4 if quick else 20)
+    bad = killed_and_resumed(scratch, package, expected, chance, 8 if quick else 20)
     yield "batch killed and resumed: cells lost, half-written or solved again", bad
 
 

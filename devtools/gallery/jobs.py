@@ -78,7 +78,17 @@ def names(page: Page) -> list[str]:
     return [path.stem for path in sorted(page.folder.glob("*.toml"), key=order)]
 
 
-def work(result: Result, folder: Path, recordings: Path, *, pictures: bool, quick: bool) -> Json:
+@dataclass(frozen=True)
+class Effort:
+    """What of a result is made. pictures: they too. quick: by the implicit solution alone. once:
+    solved a single time, as how long it takes is not asked."""
+
+    pictures: bool
+    quick: bool
+    once: bool
+
+
+def work(result: Result, folder: Path, recordings: Path, effort: Effort) -> Json:
     """Makes one result in a folder; what was measured, with "failed" where something went wrong.
 
     recordings: folder of the clips that were read so far, as they are given to the solver.
@@ -94,11 +104,12 @@ def work(result: Result, folder: Path, recordings: Path, *, pictures: bool, quic
     if said is not None:
         recording.unlink(missing_ok=True)  # it may be half written
     if said is None:
-        words = ["--quick"] if quick or result.page is Page.SCENE else []
+        words = ["--quick"] if effort.quick or result.page is Page.SCENE else []
+        words += ["--once"] if effort.once else []
         said = run_module(SOLVE, [result.name, str(folder), str(recording), *words], LONGEST)
     found = _read(folder / "measured.json")
     if said is None and (folder / "drawn.pickle").is_file():
-        words = ["write", result.name, str(folder), *([] if pictures else ["--no-picture"])]
+        words = ["write", result.name, str(folder), *([] if effort.pictures else ["--no-picture"])]
         said = run_module(BLENDER, words, LONGEST)
     if said is not None:
         found["failed"] = said

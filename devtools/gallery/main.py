@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ...solver.data.faults import BadRecipe
 from ..environment.virtual_environment import ROOT
-from .jobs import Json, Page, load, names, work, write_json
+from .jobs import Effort, Json, Page, load, names, work, write_json
 from .limits import faults, figures, of_page
 from .scene_table import SCENE_HEAD, scene_section
 from .table import line, page
@@ -26,6 +26,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
     parser.add_argument("--no-pictures", action="store_true", help="leave out the drawing")
     parser.add_argument("--quick", action="store_true", help="the implicit solution alone")
+    parser.add_argument("--once", action="store_true", help="solve once, not thrice for the clock")
     parser.add_argument("--scene", action="store_true", help="only those in a scene")
     options = parser.parse_args(argv)
     known = names(Page.SCENE) if options.scene else [*names(Page.THESIS), *names(Page.SCENE)]
@@ -43,11 +44,10 @@ def main(argv: list[str]) -> int:
         print(f"{absent[0].name}: there is no recording {absent[0].clip}.")
         return 2
     rows: list[Json] = []
-    pictures, quick = not options.no_pictures, options.quick
+    effort = Effort(not options.no_pictures, options.quick, options.once)
     with tempfile.TemporaryDirectory() as scratch:
         for result in chosen:
-            folder = options.out / result.name
-            rows.append(work(result, folder, Path(scratch), pictures=pictures, quick=quick))
+            rows.append(work(result, options.out / result.name, Path(scratch), effort))
             print(line(rows[-1]), flush=True)
     if not options.names and (options.scene or not options.quick):
         write_page(rows, scene_alone=options.scene)
