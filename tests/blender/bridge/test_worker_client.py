@@ -217,6 +217,7 @@ def test_a_solve_that_is_stopped_gives_the_motion_as_it_stands(
     assert len(answer.track.frames) == len(answer.traces.frames)
 
 
+@pytest.mark.slow
 def test_a_fit_tells_how_near_it_is_and_what_it_looks_like(fitted: Worker, jump: Recording) -> None:
     answer = fitted.ask(RequestKind.FIT, jump, UP).wait()
     assert isinstance(answer, Fitted)
@@ -224,6 +225,7 @@ def test_a_fit_tells_how_near_it_is_and_what_it_looks_like(fitted: Worker, jump:
     assert len(answer.traces.frames) == SPAN[1] - SPAN[0] + 1
 
 
+@pytest.mark.slow
 def test_how_much_is_done_is_told_from_the_first_step_of_the_fit_on(warm: Warm) -> None:
     shares = [progress.share for progress in warm.told]
     assert shares == sorted(shares)
@@ -376,6 +378,7 @@ def test_what_needs_no_fit_does_not_wait_for_one(
     assert isinstance(prepared.wait(), Cancelled)
 
 
+@pytest.mark.slow
 def test_what_cannot_be_followed_is_said_and_the_drag_goes_on(
     fitted: Worker, jump: Recording
 ) -> None:

@@ -22,6 +22,7 @@ def on_a_belt(recording: Recording) -> tuple[Recording, float]:
     return replace(recording, heads=moved), float(np.linalg.norm(mean))
 
 
+@pytest.mark.slow
 def test_a_run_on_a_belt_is_a_treadmill() -> None:
     run = load_recording(RUN)
     assert analyse(run, MotionProblem()).schedule.contacts

@@ -33,7 +33,7 @@ def test_a_clock_that_is_wrong_is_told_by_the_fall(factor: float) -> None:
     assert found.alternative.scale == pytest.approx(factor**2, rel=0.05)
 
 
-@pytest.mark.parametrize("factor", [0.85, 1.2])
+@pytest.mark.parametrize("factor", [pytest.param(0.85, marks=pytest.mark.slow), 1.2])
 def test_a_long_fall_tells_a_size_that_may_be_a_persons(factor: float) -> None:
     """One of 0.4 s tells the acceleration to a few percent: sizes that miss it by 15 % are told,
     with the clock that explains them as well."""
@@ -98,7 +98,7 @@ def test_falls_that_disagree_tell_no_clock(height: float, seconds: float) -> Non
     assert found.remedy == Repairs(time_scale=pytest.approx(0.8))
 
 
-@pytest.mark.parametrize("degrees", [40.0, 60.0])
+@pytest.mark.parametrize("degrees", [pytest.param(40.0, marks=pytest.mark.slow), 60.0])
 def test_a_walks_foot_that_floats_tells_no_clock(degrees: float) -> None:
     """Its shank is turned for a step, of which 0.1 s goes straight on as far as can be told."""
     walk = load_recording("01_01.amc").window(1841, 2160)

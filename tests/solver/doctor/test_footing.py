@@ -245,7 +245,10 @@ def treadmill(recording: Recording) -> Recording:
     return replace(recording, heads=recording.heads - (share[:, None] * way)[:, None])
 
 
-@pytest.mark.parametrize("name", ["forward_jump_116cm.bvh", "fair1_jumping.bvh"])
+@pytest.mark.parametrize(
+    "name",
+    ["forward_jump_116cm.bvh", pytest.param("fair1_jumping.bvh", marks=pytest.mark.slow)],
+)
 def test_a_jump_in_place_is_told_without_a_remedy(name: str) -> None:
     """Its clock was told to be wrong, or nothing: what it does in flight the feet do not tell."""
     damaged = in_place().of(load_recording(name)).recording
@@ -272,6 +275,7 @@ def test_feet_that_rest_without_a_contact_do_not_skid() -> None:
     assert "the feet rest on the ground, but no contact holds them" in sentence(told)
 
 
+@pytest.mark.slow
 def test_feet_that_skid_while_they_stand_are_told_as_such() -> None:
     """It was said that nothing touches."""
     after = np.clip((jump().times - jump().times[-80]) / 0.25, 0.0, 1.0)
@@ -286,7 +290,9 @@ def test_feet_that_skid_while_they_stand_are_told_as_such() -> None:
     assert (told.skidding, told.boxes) == (True, ())
 
 
-@pytest.mark.parametrize("seconds", [0.15, 0.2, 0.3])
+@pytest.mark.parametrize(
+    "seconds", [0.15, *(pytest.param(s, marks=pytest.mark.slow) for s in (0.2, 0.3))]
+)
 def test_feet_below_the_floor_for_a_moment_are_told_with_its_frames(seconds: float) -> None:
     damaged = sunk(0.09, seconds).of(jump()).recording
     deep = jump().heads[:, 0, 2] - damaged.heads[:, 0, 2] > 0.05

@@ -146,6 +146,7 @@ def test_a_jump_to_a_bar_keeps_its_times_though_the_landing_behind_it_moves() ->
     assert set_up(fitted_hop(), hanging).durations is Durations.RECORDED
 
 
+@pytest.mark.slow
 def test_the_artist_may_keep_all_times() -> None:
     requests = Requests(solution=SolverOptions(keep_times=True))
     problem = MotionProblem(pins=to(0.15).pins, requests=requests)

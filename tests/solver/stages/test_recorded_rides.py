@@ -95,9 +95,8 @@ def test_ground_that_goes_elsewhere_explains_nothing(changed: dict[str, object])
     assert analyse(carried(VELOCITY), MotionProblem(scene=(train(VELOCITY, **changed),))).unseen
 
 
-@pytest.mark.parametrize(
-    "lift", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["train", "lift"]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("lift", [False, True], ids=["train", "lift"])
 def test_the_fit_rides_along(lift: bool) -> None:
     found, still = fitted(lift), fitted_hop()
     assert found.solved

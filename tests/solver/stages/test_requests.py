@@ -153,7 +153,7 @@ CASES = {
     ),
 }
 SLOW = {"twist", "share of a torque", "rest", "pyramid", "hold that ends", "limp", "pin and cone"}
-SLOW |= {"grip", "pose"}
+SLOW |= {"grip", "pose", "moon"}
 # The others are quick: each is also seen from outside, below.
 ALL = [pytest.param(n, marks=pytest.mark.slow) if n in SLOW else n for n in CASES]
 

@@ -103,6 +103,7 @@ def test_a_fit_alone_is_unchanged() -> None:
     np.testing.assert_array_equal(solid.outcome.x, without.outcome.x)
 
 
+@pytest.mark.slow
 def test_what_is_off_has_no_rows() -> None:
     adaptation = through_thigh()
     assert adaptation.setup.solid is None

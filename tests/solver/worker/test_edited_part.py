@@ -53,6 +53,7 @@ def test_an_edit_is_of_the_jumps_that_it_changes(
     assert [p.start + first for p in mine] == pytest.approx([flight.start] * len(mine))
 
 
+@pytest.mark.slow
 def test_what_is_about_all_of_a_take_is_solved_on_all_of_it() -> None:
     heavy = Requests(body=BodyChange(mass=80.0))
     for problem in (MotionProblem(), replace(pinned("ground 5"), requests=heavy)):
