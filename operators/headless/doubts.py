@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from ...solver.analysis.grounding import strays
 from ...solver.analysis.leaps import Leap, Stand, leaps
 from ...solver.analysis.pinned_places import backward_stances, pinned_places
 from ...solver.data.faults import Fault
@@ -24,7 +25,7 @@ from ..words.doubt_text import (
     rise_doubts,
     up_doubts,
 )
-from ..words.request_doubt_text import direction_doubts
+from ..words.request_doubt_text import contact_doubts, direction_doubts
 
 
 def doubts_about(
@@ -41,6 +42,7 @@ def doubts_about(
     )
     found = subject.analysis
     doubts += direction_doubts(problem, backward_stances(found.performance, found.schedule))
+    doubts += contact_doubts(problem, _strays(subject))
     unscaled = scaled_recording(subject.recording, 1.0 / subject.factor)
     doubts += distance_doubts(problem, unscaled.heads)
     doubts += damage_doubts(faults_of(unscaled, problem))
@@ -72,3 +74,12 @@ def _leaps(subject: Subject) -> list[Leap]:
         for contact, place in zip(schedule.contacts, asked, strict=True)
     )
     return leaps(schedule.phases, stands, recording.times, recording.heads)
+
+
+def _strays(subject: Subject) -> dict[str, tuple[float, float]]:
+    """In lengths as recorded, with the scene's frames."""
+    found, recording = subject.analysis, subject.recording
+    return {
+        name: (away / subject.factor, float(recording.frames[0]) + recording.rate * when)
+        for name, (away, when) in strays(found.schedule, found.performance).items()
+    }

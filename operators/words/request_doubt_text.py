@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from math import degrees, tau
 
 import numpy as np
@@ -24,6 +24,7 @@ MOST_FRICTION = 3.0  # of rubber on dry concrete it is 1
 MOST_TORQUE, MOST_SHARE = 1000.0, 5.0  # N·m, of the strongest hips twice; times the recording's
 MOST_SPEED = 30.0  # m/s, of an express train's roof
 MOST_SLACK = 0.1  # m that a contact may miss its place by
+MOST_STRAY = 0.3  # m; feet that slide or roll while they stand go by a third of it
 ROUNDING = 1e-6  # rad, of degrees in a recipe
 SAME = 0.01  # m; a leap that differs by less is as recorded
 
@@ -62,6 +63,19 @@ def direction_doubts(problem: MotionProblem, backwards: Collection[str]) -> list
         if pin.phase in backwards and pin.axes is OffsetAxes.TRAVEL and any(pin.offset[:2])
     ]
     return [f"{quoted(names)}: forward is the way it travels, at the body's back"] if names else []
+
+
+def contact_doubts(problem: MotionProblem, strays: Mapping[str, tuple[float, float]]) -> list[str]:
+    """A line for each contact of the artist's that lasts while its point is elsewhere. strays: how
+    far, m, each contact's point goes from its place at most, and the scene's frame."""
+    edited = {edit.name for edit in problem.contacts} | {added.point for added in problem.added}
+    return [
+        f"“{name}” lasts while the recording has its point {length(away)} from where it touches "
+        f"(frame {frame:.0f}): where no motion holds it there, it will be let go. Let it last for "
+        "as long as the point stands"
+        for name, (away, frame) in strays.items()
+        if name in edited and away > MOST_STRAY
+    ]
 
 
 def whole_turn_doubts(turns: Iterable[tuple[str, float]]) -> list[str]:

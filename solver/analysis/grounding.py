@@ -17,7 +17,7 @@ from ..data.contacts import Contact, ContactSchedule, Interval
 from ..data.scene import SceneObject
 from ..numerics.interpolation import interpolate
 from ..scene.support import StandingGround
-from .performance import Performance
+from .performance import Performance, contact_points
 
 NEAR_FLOOR = 0.04  # m; a place further away is on something else
 PLACE_BAND = (-0.002, 0.0015)  # m about the floor's height, where places are
@@ -115,6 +115,20 @@ def disjoint(schedule: ContactSchedule) -> ContactSchedule:
             kept[last] = replace(before, end=turn)
             kept.append(replace(contact, start=turn))
     return replace(schedule, contacts=tuple(sorted(kept, key=lambda c: (c.start, c.point))))
+
+
+def strays(schedule: ContactSchedule, performance: Performance) -> dict[str, tuple[float, float]]:
+    """How far, m, and when, s, the point of each contact on the floor is from its place at most, in
+    the recording and while it lasts."""
+    points, times = contact_points(performance)[0], performance.times
+    found = {}
+    for contact in (each for each in schedule.contacts if each.on is None):
+        lasts = np.flatnonzero((times >= contact.start) & (times <= contact.end))
+        away = np.linalg.norm(points[contact.point].track[lasts] - contact.place, axis=1)
+        if len(lasts):
+            worst = int(np.argmax(away))
+            found[contact.name] = float(away[worst]), float(times[lasts[worst]])
+    return found
 
 
 def _overlap(before: Contact, after: Contact) -> bool:

@@ -1,12 +1,13 @@
 """What is wrong with a recording is told before a fit that is to end far from it."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from hangtime.operators.headless.doubts import doubts_about
 from hangtime.operators.words.doubt_text import MOST_DAMAGES, damage_doubts
-from hangtime.solver.data.problem import MotionProblem, Pin
+from hangtime.solver.data.problem import ContactEdit, MotionProblem, Pin
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.doctor.finding import Finding, FindingKind
@@ -39,6 +40,18 @@ def test_a_frame_that_no_fit_can_follow_is_told_with_where_its_remedy_is() -> No
     damage, remedy = told(recording)
     assert f"at frame {recording.frames[109]:g}" in damage
     assert "“doctor”" in remedy
+
+
+def test_a_contact_that_is_to_last_while_its_foot_is_elsewhere_is_told() -> None:
+    recording, late = load_recording(JUMP), 210.0
+    for end, doubts in ((115.0, 0), (late, 1)):
+        edited = replace(USUAL, contacts=(ContactEdit("Left toe 1", end_frame=end),))
+        lines = [line for line in told(recording, edited) if "Left toe 1" in line]
+        assert len(lines) == doubts, (end, lines)
+    toe = recording.heads[:, recording.index("LeftToeBase")]
+    flown = 100.0 * float(np.linalg.norm(toe[int(late - recording.frames[0])] - toe[0]))
+    (said,) = re.findall(rf"([\d.]+) cm from where it touches \(frame {late:.0f}\)", lines[0])
+    assert float(said) == pytest.approx(flown, rel=0.1)
 
 
 def test_at_a_stated_stature_lengths_are_told_as_recorded() -> None:
