@@ -57,6 +57,7 @@ DAMAGES = (
     exchanged(30, Mend.LEGS, angles=True),
     exchanged(30, Mend.LEGS, Mend.ARMS),
     *map(flipped, (2, 12)),
+    flipped(12, of_parent=True),
     *(wrapped(part, n) for part in (Part.PELVIS, Part.THIGH) for n in (2, 6)),
     *map(held, (1, 6)),
     *(frozen(0.3, repeated=each) for each in (False, True)),

@@ -123,20 +123,20 @@ def exchanged(frames: int, *limbs: Mend, last: bool = False, angles: bool = Fals
     return Damage(name, kinds[0], do, tuple(kinds[1:]))
 
 
-def flipped(frames: int) -> Damage:
-    """A thigh turned by half a turn about its own axis."""
+def flipped(frames: int, of_parent: bool = False) -> Damage:
+    """A thigh turned by half a turn about its own axis, or one of its parent."""
 
     def do(recording: Recording, rng: np.random.Generator) -> Damaged:
         local = LocalPoses.of(recording)
         bone = bone_of(recording, Part.THIGH)
         first = int(rng.integers(10, len(recording.frames) - frames - 10))
-        half = rotation_matrix(np.array([0.0, np.pi, 0.0]))
-        local.rotations[first : first + frames, bone] = (
-            local.rotations[first : first + frames, bone] @ half
-        )
+        inside = local.rotations[first : first + frames, bone]
+        turned = axis_rotation(2, np.pi) @ inside if of_parent else inside @ axis_rotation(1, np.pi)
+        local.rotations[first : first + frames, bone] = turned
         return Damaged(local.posed(recording), recording)
 
-    return Damage(f"thigh flipped, {frames} frames", FindingKind.FLIP, do)
+    about = " about its parent's axis" if of_parent else ""
+    return Damage(f"thigh flipped{about}, {frames} frames", FindingKind.FLIP, do)
 
 
 def wrapped(part: Part, frames: int, channel: int = 0, rate: float | None = None) -> Damage:

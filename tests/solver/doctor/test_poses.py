@@ -113,6 +113,7 @@ def test_frames_of_a_run_that_are_off_are_a_spike_and_no_cut(off: list[float], f
         (exchanged(30, Mend.LEGS), 1.5),  # each bone is 5° off
         (exchanged(30, Mend.ARMS), 1.5),
         (flipped(12), 0.1),
+        (flipped(12, of_parent=True), 0.1),
         (held(6), 0.05),
         (stretched(0.15), 0.15),
         (gap(1), 0.01),
@@ -125,6 +126,7 @@ def test_frames_of_a_run_that_are_off_are_a_spike_and_no_cut(off: list[float], f
         "exchanged legs",
         "exchanged arms",
         "flips",
+        "flips about an axis of the parent",
         "held frames",
         "bone lengths",
         "a missing frame",
