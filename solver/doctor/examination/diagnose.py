@@ -47,6 +47,7 @@ PARTING = (FindingKind.JUMP, FindingKind.LEAP)
 WHOLE_BODY = (FindingKind.SLIDING, FindingKind.IN_PLACE, FindingKind.FLOATING)
 LEAST_KEPT = 0.5  # s; of less nobody makes a range
 GAPS = (FindingKind.DROPPED_FRAMES, FindingKind.JUMP)
+LEAPING = (*GAPS, FindingKind.RETIMED)  # at which the whole body is jerked downwards, too
 MASS_BY_SQUARE = (12.0, 42.0)  # kg/m²; children have 14, the heaviest who jump 40
 FEWEST_FRAMES = 5  # which have a fourth difference
 SLOWEST = 1.0  # s from frame to frame, Blender's slowest rate: a wrong one is told, and its remedy
@@ -173,7 +174,7 @@ def diagnose(
         found.append(retimed)
     leaps = find_leaps(performance)
     near = LEAP_WINDOW * recording.rate
-    if leaps is not None and not _are_at(leaps, _places(found, *GAPS), near):
+    if leaps is not None and not _are_at(leaps, _places(found, *LEAPING), near):
         found.append(leaps)
     kept = _kept(found, frames, rate)
     if kept is not None and any(finding.kind in PARTING for finding in found):

@@ -17,7 +17,10 @@ def hops() -> Recording:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("factor", "way"), [(1.5, "slowly"), (2.0, "slowly"), (1 / 1.5, "fast")])
+@pytest.mark.parametrize(
+    ("factor", "way"),
+    [(1.5, "slowly"), (2.0, "slowly"), (1 / 1.5, "fast"), (1 / 2.1, "fast")],
+)
 def test_a_flight_that_falls_otherwise_than_others_is_told_with_its_frames(
     factor: float, way: str
 ) -> None:
