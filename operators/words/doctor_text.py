@@ -20,8 +20,9 @@ EXCHANGED = (
     "or ends, and if they are exchanged back it does not."
 )
 
-# {n}: the number, {speed} and {way}: of it, without its sign, and upwards or downwards, {amount}:
-# with its unit, {part}, {where}: "at frame 12" or "in frames 3 to 9, 40"; "" without frames.
+# {n}: the number, {count}: of frames, with its verb, {speed} and {way}: of it, without its sign, and
+# upwards or downwards, {amount}: with its unit, {part}, {where}: "at frame 12" or "in frames 3 to
+# 9, 40"; "" without frames.
 # {clock}: how the recording is played. {end}: what hangs on the part and leaves its place.
 SENTENCES = {
     FindingKind.UP_AXIS: "The figure lies: another axis than Z points from its feet to its head.",
@@ -36,7 +37,7 @@ SENTENCES = {
     "movement that goes on as if time had passed.",
     FindingKind.REPEATED_FRAMES: "The pose is held {where} and the movement then goes on from "
     "where it stopped: {n:.0f} frames are too many.",
-    FindingKind.DROPPED_FRAMES: "About {n:.0f} frames are missing: the whole body jumps {where}.",
+    FindingKind.DROPPED_FRAMES: "About {count} missing: the whole body jumps {where}.",
     FindingKind.BONE_LENGTH: "{part} changes its length by up to {n:.1f} cm {where}{end}.",
     FindingKind.NOISE: "The joints tremble by {n:.1f} mm from frame to frame, {part} most.",
     FindingKind.LEVEL_HIPS: "The hips keep one height, though the legs below them stretch and bend "
@@ -138,6 +139,7 @@ def finding_sentence(finding: Finding) -> str:
     sentence = SENTENCES[finding.kind]
     told = sentence.format(
         n=finding.amount,
+        count="1 frame is" if round(finding.amount) == 1 else f"{finding.amount:.0f} frames are",
         speed=abs(finding.amount),
         way="upwards" if finding.amount > 0.0 else "downwards",
         amount=amount_text(finding),

@@ -54,6 +54,12 @@ def test_bones_keep_their_names_at_the_start_of_a_sentence_and_places_are_counte
     )
 
 
+def test_a_single_frame_is_one() -> None:
+    one, four = (Finding(FindingKind.DROPPED_FRAMES, n, "frames", ((8.0, 8.0),)) for n in (1.0, 4.0))
+    assert finding_sentence(one).startswith("About 1 frame is missing: ")
+    assert finding_sentence(four).startswith("About 4 frames are missing: ")
+
+
 def test_of_what_is_cut_everywhere_it_is_advised_to_choose() -> None:
     cut = Finding(FindingKind.JUMP, 40.0, "cm", ((8.0, 9.0),))
     assert finding_sentence(cut).endswith("Choose frames on one side of it.")
