@@ -33,6 +33,8 @@ SENTENCES = {
     FindingKind.EXCHANGED_ARMS: f"The left and the right arm {EXCHANGED}",
     FindingKind.FLIP: "{part} is turned by half a turn {where}.",
     FindingKind.SPIKE: "Frames are far from those around them, {part} by {amount}: {where}.",
+    FindingKind.CONVERTED_RATE: "The clip was made from {n:.4g} frames a second by repeating some "
+    "at a steady beat, {where}: the body stops at each and hurries in between.",
     FindingKind.HELD_FRAMES: "The pose of the frame before is held {where}, amid a "
     "movement that goes on as if time had passed.",
     FindingKind.REPEATED_FRAMES: "The pose is held {where} and the movement then goes on from "
@@ -99,6 +101,7 @@ REMEDIES = {
     FindingKind.EXCHANGED_ARMS: "Exchange Back",
     FindingKind.FLIP: "Turn Back",
     FindingKind.SPIKE: "Smooth Over",
+    FindingKind.CONVERTED_RATE: "Even Out",
     FindingKind.HELD_FRAMES: "Fill In",
     FindingKind.REPEATED_FRAMES: "Take Out",
     FindingKind.DROPPED_FRAMES: "Put In",

@@ -18,6 +18,7 @@ class FindingKind(Enum):
     EXCHANGED_ARMS = "exchanged arms"
     FLIP = "flip"
     SPIKE = "spike"
+    CONVERTED_RATE = "converted rate"
     HELD_FRAMES = "held frames"
     REPEATED_FRAMES = "repeated frames"
     DROPPED_FRAMES = "dropped frames"

@@ -15,6 +15,7 @@ from hangtime.solver.doctor.frames.full_turns import find_full_turns
 from hangtime.solver.doctor.frames.holds import find_held, find_repeated
 from hangtime.solver.doctor.frames.jumps import find_jumps
 from hangtime.solver.doctor.frames.missing import find_dropped
+from hangtime.solver.doctor.frames.rate_conversion import find_conversion
 from hangtime.solver.doctor.frames.spikes import find_spikes
 from hangtime.solver.doctor.lengths import find_lengths
 from hangtime.solver.doctor.noise import find_noise
@@ -44,7 +45,7 @@ def of_poses(recording: Recording) -> list[Finding]:
     found = []
     for find in (
         partial(find_full_turns, figure=figure()),
-        *(find_held, find_repeated),
+        *(find_conversion, find_held, find_repeated),
         *(partial(find_exchange, figure=figure(), limbs=each) for each in LIMBS),
         *(partial(each, figure=figure()) for each in (find_flips, find_spikes)),
         find_dropped,

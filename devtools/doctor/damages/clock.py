@@ -87,6 +87,18 @@ def frozen(seconds: float, *, repeated: bool = False) -> Damage:
     return Damage(f"a pose {what} for {seconds:g} s", kind, do)
 
 
+def converted(rate: float, to: float) -> Damage:
+    """Sampled at a rate, Hz, and played at a higher one by repeating frames at a steady beat."""
+
+    def do(recording: Recording, _: np.random.Generator) -> Damaged:
+        slow, original = at_rate(recording, rate), at_rate(recording, to)
+        rows = (np.arange(len(original.frames)) * rate / to + 1e-9).astype(int)
+        rotations, heads = slow.rotations[rows], slow.heads[rows]
+        return Damaged(replace(original, rotations=rotations, heads=heads), original)
+
+    return Damage(f"{rate:g} Hz made {to:g}", FindingKind.CONVERTED_RATE, do)
+
+
 def dropped(count: int) -> Damage:
     """Single frames missing, so that the rest comes earlier."""
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from ....solver.body.anatomy import Part
 from ....solver.data.problem import Mend
 from ....solver.doctor.repairs import UpAxis
-from .clock import dropped, frozen, gap, held, ramped, slowed
-from .damage import FAST_RATE
+from .clock import converted, dropped, frozen, gap, held, ramped, slowed
+from .damage import FAST_RATE, VIDEO_RATE
 from .poses import (
     begun_at_rest,
     burst,
@@ -61,6 +61,7 @@ DAMAGES = (
     *(wrapped(part, n) for part in (Part.PELVIS, Part.THIGH) for n in (2, 6)),
     *map(held, (1, 6)),
     *(frozen(0.3, repeated=each) for each in (False, True)),
+    converted(24.0, VIDEO_RATE),
     *map(dropped, (1, 4)),
     *map(gap, (3, 6)),
     gap(2, 2),

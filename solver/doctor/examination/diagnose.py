@@ -27,6 +27,7 @@ from ..frames.full_turns import find_full_turns
 from ..frames.holds import find_held, find_repeated
 from ..frames.jumps import find_jumps, with_those_left
 from ..frames.missing import find_dropped
+from ..frames.rate_conversion import find_conversion
 from ..frames.spikes import find_spikes
 from ..lengths import find_lengths
 from ..noise import find_noise, reach
@@ -122,6 +123,7 @@ def diagnose(
     recording = scaled_recording(recording, size)  # limits in metres are those of persons
     told(0.05)
     recording = cured(recording, find_full_turns(recording, figure))
+    recording = cured(recording, find_conversion(recording))
     recording = cured(recording, find_held(recording))
     repeated = find_repeated(recording)
     if repeated is not None:  # and cured without another number for any frame

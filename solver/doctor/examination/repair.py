@@ -20,6 +20,7 @@ from ..frames.exchanges import exchanged_back
 from ..frames.flips import unflipped
 from ..frames.full_turns import without_full_turns
 from ..frames.holds import held_frames
+from ..frames.rate_conversion import conversion, evened
 from ..frames.spikes import unsound_spikes
 from ..lengths import kept_lengths
 from ..local_poses import LocalPoses
@@ -226,6 +227,8 @@ def _with(mend: Mend, recording: Recording, figure: Figure) -> Recording:
             unsound = unsound_spikes(recording, local, figure)
             return local.filled(unsound).posed(recording)
         case Mend.HELD_FRAMES:
+            if (found := conversion(recording)) is not None:
+                return evened(recording, found)
             held = held_frames(recording)
             unsound = np.broadcast_to(held[:, None], recording.heads.shape[:2])
             return LocalPoses.of(recording).filled(unsound).posed(recording)

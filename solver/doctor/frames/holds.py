@@ -24,7 +24,7 @@ MOVING = 1e-3  # m, of the farthest joint from a frame to the next, beside a pos
 LONGEST_HELD = 0.25  # s; a longer one is a pause, but where the body stops and starts in a frame:
 LONGEST_FROZEN, SUDDEN = 1.0, 0.3  # s; m/s, of the farthest joint before and after
 FASTER = 2.0  # than beside it, on its way while it is held; what goes further jumps
-FEWEST_REPEATED = 3  # frames; other frame rates double single ones, and then their clock is right
+FEWEST_REPEATED = 3  # frames; of fewer the steps beside do not tell
 
 
 @dataclass(frozen=True)
@@ -39,10 +39,8 @@ class HeldPose:
 
 def holds(recording: Recording) -> list[HeldPose]:
     """The poses that are held while the body moves before and after."""
-    moves = np.diff(recording.heads.reshape(len(recording.frames), -1), axis=0)
-    steps = np.linalg.norm(moves.reshape(len(moves), -1, 3), axis=2).max(axis=1)
-    turned = np.abs(np.diff(recording.rotations, axis=0)).max(axis=(1, 2, 3))
-    still, found = (steps < HELD) & (turned < HELD), list[HeldPose]()
+    moves, steps = _moves(recording), steps_between(recording)
+    still, found = still_steps(recording, steps), list[HeldPose]()
     for first, last in runs(still):
         if first == 0 or last == len(steps) - 1:
             continue
@@ -55,6 +53,18 @@ def holds(recording: Recording) -> list[HeldPose]:
         if least > MOVING:
             found.append(HeldPose(first, count, _goes_on(moves, still, first, last)))
     return found
+
+
+def steps_between(recording: Recording) -> FloatArray:
+    """(T - 1,) m, of the farthest joint from a frame to the next."""
+    moves = _moves(recording)
+    return np.asarray(np.linalg.norm(moves.reshape(len(moves), -1, 3), axis=2).max(axis=1))
+
+
+def still_steps(recording: Recording, steps: FloatArray) -> BoolArray:
+    """(T - 1,) whether nothing moves or turns from a frame to the next. steps: as above."""
+    turned = np.abs(np.diff(recording.rotations, axis=0)).max(axis=(1, 2, 3))
+    return np.asarray((steps < HELD) & (turned < HELD))
 
 
 def held_frames(recording: Recording) -> BoolArray:
@@ -85,6 +95,11 @@ def find_repeated(recording: Recording) -> Finding | None:
         spans(recording, _frames(recording, found)),
         remedy=Repairs(missing=extra),
     )
+
+
+def _moves(recording: Recording) -> FloatArray:
+    """(T - 1, D) m, of all joints from a frame to the next."""
+    return np.asarray(np.diff(recording.heads.reshape(len(recording.frames), -1), axis=0))
 
 
 def _frames(recording: Recording, found: list[HeldPose]) -> BoolArray:
