@@ -42,6 +42,7 @@ from .drifts import find_drifts
 from .ground import as_stood, beneath
 from .repair import placed_skin, repaired, taken_out
 from .scales import find_scales
+from .settled import Stance, joined_remedies, remedy_of, settled
 
 PARTING = (FindingKind.JUMP, FindingKind.LEAP)
 # What moves the feet along the floor with the body; where it is told they slide for that.
@@ -112,10 +113,10 @@ def diagnose(
         if finding is None:
             return recording
         found.append(finding)
-        return repaired(recording, _remedy(finding), chosen)
+        return repaired(recording, remedy_of(finding), chosen)
 
     up = find_up(recording, figure_of(recording, chosen))
-    recording, skin = cured(recording, up), placed_skin(skin, _remedy(up))
+    recording, skin = cured(recording, up), placed_skin(skin, remedy_of(up))
     recording = cured(recording, _find_bind_pose(recording))
     _require_length(recording)
     figure = figure_of(recording, chosen)
@@ -128,7 +129,7 @@ def diagnose(
     repeated = find_repeated(recording)
     if repeated is not None:  # and cured without another number for any frame
         found.append(repeated)
-        recording = taken_out(recording, _remedy(repeated).missing)
+        recording = taken_out(recording, remedy_of(repeated).missing)
     for limbs in LIMBS:
         recording = cured(recording, find_exchange(recording, figure, limbs))
     told(0.1)
@@ -163,18 +164,10 @@ def diagnose(
         told(0.65)
         return find_contacts(performance, scene)
 
-    scales = find_scales(performed, touched, _trusted(found, rate))
-    found += scales
-    placed = reduce(Repairs.joined, map(_remedy, scales), Repairs())
+    trusted, seconds = _trusted(found, rate), float(recording.times[-1])
+    scales = find_scales(performed, touched, trusted)
     told(0.95)
-    performance = performed(placed)
-    height, seconds = performance.character.height, float(performance.times[-1])
-    if seconds < MIN_CLIP_DURATION:
-        found.append(Finding(FindingKind.TOO_SHORT, seconds, "s"))
-    retimed = None if scales else find_retimed(performance, _trusted(found, rate))
-    if retimed is not None:
-        found.append(retimed)
-    leaps = find_leaps(performance)
+    leaps = find_leaps(performed(joined_remedies(scales)))
     near = LEAP_WINDOW * recording.rate
     if leaps is not None and not _are_at(leaps, _places(found, *LEAPING), near):
         found.append(leaps)
@@ -184,22 +177,33 @@ def diagnose(
         recording = recording.window(*kept)  # how it stands elsewhere is no matter, and may differ
         performed.cache_clear()
         touched.cache_clear()
-        performance = performed(placed)
-    upright = performed(placed).recording
-    tilt = find_tilt(upright, figure, beneath(upright, scene))
-    if tilt is not None:
-        found.append(tilt)
-        placed = placed.joined(_remedy(tilt))
-    drifts = find_drifts(lambda repairs: as_stood(performed(repairs), scene), figure, placed)
-    found += drifts
-    placed = reduce(Repairs.joined, map(_remedy, drifts), placed)
+
+    def standing(placed: Repairs) -> Stance:
+        upright = performed(placed).recording
+        tilt = find_tilt(upright, figure, beneath(upright, scene))
+        placed = placed.joined(remedy_of(tilt))
+        drifts = find_drifts(lambda repairs: as_stood(performed(repairs), scene), figure, placed)
+        placed = placed.joined(joined_remedies(drifts))
+        footing = find_footing(as_stood(performed(placed), scene), touched(placed))
+        return Stance((tilt, *drifts) if tilt else tuple(drifts), tuple(footing))
+
+    scales, stance = settled(scales, standing, performed, touched, trusted)
+    found += scales
+    seconds *= joined_remedies(scales).time_scale
+    if seconds < MIN_CLIP_DURATION:
+        found.append(Finding(FindingKind.TOO_SHORT, seconds, "s"))
+    placed = joined_remedies((*scales, *stance.drifts))
     stood = as_stood(performed(placed), scene)
-    footing = find_footing(stood, touched(placed))
-    found += footing if retimed is None else explained(footing, retimed)
+    retimed = None if scales else find_retimed(performed(placed), trusted)
+    if retimed is not None:
+        found.append(retimed)
+    found += stance.drifts
+    found += stance.footing if retimed is None else explained(stance.footing, retimed)
     feet = find_sliding_feet(stood)
     if feet is not None and not any(finding.kind in WHOLE_BODY for finding in found):
         found.append(feet)
     fitting = None
+    height = stood.character.height
     if mass is not None and not (MASS_BY_SQUARE[0] < mass / height**2 < MASS_BY_SQUARE[1]):
         fitting = USUAL_MASS_BY_SQUARE * height**2
         found.append(Finding(FindingKind.MASS, mass, "kg"))
@@ -218,10 +222,6 @@ def _parted(found: list[Finding], frames: FloatArray, kept: Span) -> list[Findin
     first, last = np.searchsorted(frames, kept).tolist()
     cut = Repairs(trim=first, trim_end=len(frames) - 1 - last)
     return [replace(f, remedy=cut) if f.kind in PARTING else f for f in found]
-
-
-def _remedy(finding: Finding | None) -> Repairs:
-    return (finding and finding.remedy) or Repairs()
 
 
 def _trusted(found: list[Finding], rate: float) -> Trusted:

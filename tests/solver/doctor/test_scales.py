@@ -4,7 +4,7 @@ from functools import cache
 
 import pytest
 from hangtime.devtools.doctor.damages.clock import slowed
-from hangtime.devtools.doctor.damages.whole_body import joined, sized
+from hangtime.devtools.doctor.damages.whole_body import joined, rising, sized
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.examination.diagnose import Diagnosis, diagnose
 from hangtime.solver.doctor.examination.repair import repaired
@@ -82,3 +82,18 @@ def test_a_frame_rate_that_an_analysis_refuses_is_told(clip: str, times: float) 
     found = diagnose(recording)
     assert "time scale" in kinds(found)
     assert found.repairs.time_scale == pytest.approx(1.0 / times, rel=0.01)
+
+
+def test_a_clock_is_told_of_a_recording_that_rises() -> None:
+    damaged = rising(0.1).of(jump()).recording
+    found = diagnose(slowed(1.25).of(damaged).recording)
+    assert kinds(found) == ["time scale", "rising"]
+    assert found.repairs.time_scale == pytest.approx(0.8, rel=1e-3)
+    assert found.repairs.rise == pytest.approx(0.1, abs=0.015)  # at the clock that is right
+
+
+def test_a_rise_alone_is_no_wrong_clock() -> None:
+    """As its feet leave the lowest floor, the wrong moments seem to be falls."""
+    damaged = rising(0.07).of(load_recording("hops_in_place.bvh").window(151, 451)).recording
+    faults = [finding for finding in diagnose(damaged).findings if not finding.kind.note]
+    assert [fault.kind.value for fault in faults] == ["rising"]
