@@ -372,6 +372,8 @@ def in_words(fit: FitQuality, needs: FitNeeds) -> str:
     """Quality of a fit in words."""
     off = fit.joint_centres_rms_cm
     words = next((words for limit, words in CLOSENESS_WORDS if off < limit), LOOSE)
+    if words != LOOSE and fit.is_far_somewhere:
+        words += ", but far from it in one place"
     told = accepted_lines(needs)
     return f"{words}. {'. '.join(told)}" if told else words
 

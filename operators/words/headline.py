@@ -29,6 +29,7 @@ AS_RECORDED = {
     "that is asked for was reached",
 }
 FAR_OFF = 0.05  # m, beside the take; a blend of less is hardly seen
+SEEN_SLIDE = 2.0  # mm, of a loaded point; what is solved leaves one, or two where soles give
 SLIDES = 0.01  # m, of feet on the way back, that shows
 BLEND_SLIDES = 0.03  # m; by less those go that stand a little off the recording in the fit
 LURCH = 0.5  # m/s, by which a blend's hips are faster than the take's; of less, likewise
@@ -83,13 +84,15 @@ def headline(report: Report) -> list[str]:
         fit = (line.value for line in report.failed if line.item is CertificateItem.FIT_RMS)
         return [sentence(NoSolution(report.status, fit_off_cm=next(fit, 0.0)))]
     accepted = accepted_lines(report.needs)
-    told = [nearness(report.fit_to_recording), *accepted, *lifted_lines(report)]
+    near = report.fit_to_recording
+    told = [nearness(near), *turned_away_lines(near), *accepted, *lifted_lines(report)]
     told += given_up_lines(report) + missed_body_lines(report.missed_bodies)
     told += blend_lines(report.blends) + turned_lines(report)
     told += slide_lines(report.slide_on_way_back_m)
     told += [AS_RECORDED[report.durations]] if report.durations in AS_RECORDED else []
     told += other_gravity_lines(report)
     told += [line_told(line) for line in most_telling(report.failed)]
+    told += [line_told(line) for line in report.certificate if _is_seen_sliding(line)]
     missed = [missed_line(report.missed_contacts)] if report.missed_contacts else []
     return [*missed, _solved(report), *(f"  {line}" for line in told)]
 
@@ -138,6 +141,9 @@ def _solved(report: Report) -> str:
     lines = f"{len(failed)} of the certificate's {count} lines {do} not hold{_as_recorded(failed)}"
     if any(line.item in FITS for line in failed):
         return f"Solved, but the fit is far from the recording: {lines}."
+    if report.fit_to_recording.is_far_somewhere:
+        said = "Solved, but the fit is far from the recording in one place"
+        return f"{said}: {lines}." if failed else f"{said}."
     if report.unseen_support or report.let_go:
         said = "Solved, but not with what the recording shows alone"
         return f"{said}, and {lines}." if failed else f"{said}."
@@ -175,6 +181,14 @@ def nearness(fit: FitQuality) -> str:
         return said
     worst = f"{plain(fit.worst_joint_cm)} cm, {fit.worst_joint}"
     return f"{said}; worst {worst}, frame {fit.worst_joint_frame:.0f}"
+
+
+def turned_away_lines(fit: FitQuality) -> list[str]:
+    """A limb that the fit turns away from the recording, if there is one: a line."""
+    if not fit.is_turned:
+        return []
+    turned = f"{fit.most_turned_deg:.0f}° (frame {fit.most_turned_frame:.0f})"
+    return [f"The fit turns the {fit.most_turned} away from the recording by {turned}"]
 
 
 def unseen_lines(found: Sequence[UnseenSupportReport]) -> list[str]:
@@ -316,6 +330,11 @@ def most_telling(failed: tuple[CertificateLine, ...]) -> list[CertificateLine]:
     others = [line for line in failed if line.item not in FITS]
     others.sort(key=lambda line: (not line.as_recorded, line.value / line.limit), reverse=True)
     return [*fit, *others[:MOST_NAMED]]
+
+
+def _is_seen_sliding(line: CertificateLine) -> bool:
+    """Whether a loaded point slides by more than a viewer may see, though its line holds."""
+    return line.item is Item.SLIDE and line.holds and line.value > SEEN_SLIDE
 
 
 def line_told(line: CertificateLine) -> str:

@@ -132,6 +132,13 @@ class MotionProblem:
         return (*(pin.name for pin in self.pins), *self.requests.names)
 
     @property
+    def asks_nothing(self) -> bool:
+        """Whether its result is the fit, and no edit of that."""
+        alone = replace(self.requests, solution=Requests().solution) == Requests()
+        refined = self.requests.solution.method is Method.EXPLICIT
+        return alone and not (self.pins or self.scene or self.loop or refined)
+
+    @property
     def pins_alone(self) -> bool:
         """Whether nothing but pins is asked for, of a recording as it was found: then those of its
         frames alone may be solved that the pins are about (worker/edited_part.py)."""

@@ -87,7 +87,7 @@ def report(
     lines = certificate(motion, left, torques, drifts, quality, partial(scene_frame, fit))
     return Report(
         status=adaptation.outcome.status,
-        certificate=beside_recording(lines, fit),
+        certificate=lines if problem.asks_nothing else beside_recording(lines, fit),
         recording=_recording(fit, origin),
         figure=_figure(fit, motion, problem),
         pins=tuple(_pin(pin) for pin in problem.pins),

@@ -37,7 +37,7 @@ class CertificateLine:
     """One figure of the certificate. where: a contact or a side. frame: None for a mean.
 
     holds: whether the value is at most the limit. recorded: the value of the recording (its fit),
-    None where that is not told.
+    None where that is not told, or the motion is that fit.
     """
 
     item: CertificateItem

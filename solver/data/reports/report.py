@@ -56,6 +56,11 @@ class ReductionReport:
     explained_share: tuple[float, ...]
 
 
+FAR_JOINT = 15.0  # cm, of one joint off the recording in one frame; good fits have 4 to 12
+FAR_TURNED = 45.0  # degrees, likewise; good fits have 15 to 43
+TOE = "toe"
+
+
 @dataclass(frozen=True)
 class FitQuality:
     """Distance of the fit from the recording, at the recording's frames.
@@ -76,6 +81,16 @@ class FitQuality:
     most_turned: str = ""
     most_turned_deg: float = 0.0
     most_turned_frame: float = 0.0
+
+    @property
+    def is_turned(self) -> bool:
+        """Whether a limb points elsewhere; a toe's turn is hardly seen."""
+        return self.most_turned_deg > FAR_TURNED and not self.most_turned.endswith(TOE)
+
+    @property
+    def is_far_somewhere(self) -> bool:
+        """Whether a joint, or a limb, is where the recording has none."""
+        return self.worst_joint_cm > FAR_JOINT or self.is_turned
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from hangtime.operators.words.headline import MOST_GIVEN_UP, headline
 from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.reports.certificate import CertificateItem
 from hangtime.solver.data.reports.constraints import ConstraintReport
 from hangtime.solver.data.reports.jumps import LiftedFlight
 from hangtime.solver.data.reports.keys import BlendReport, BodyMiss
@@ -126,6 +127,43 @@ def test_a_loop_that_goes_elsewhere_than_the_recorded_cycle_is_told() -> None:
     turned = replace(made, loop=replace(loop, turned_deg=-5.04))
     assert headline(replace(made, loop=loop)) == headline(made)
     assert "  The loop goes 5.0° further to the right than the recorded cycle" in headline(turned)
+
+
+def test_a_fit_that_is_far_off_in_one_place_is_told_so_first() -> None:
+    problem = MotionProblem()
+    made = report(adapt(fitted_hop(), problem), problem, Origin("hop"))
+    fit = made.fit_to_recording
+
+    def lines(**values: float | str) -> list[str]:
+        return headline(replace(made, fit_to_recording=replace(fit, **values)))
+
+    far = "Solved, but the fit is far from the recording in one place"
+    assert not lines()[0].startswith(far)
+    assert lines(worst_joint_cm=18.7)[0].startswith(far)
+    turned = lines(most_turned="left shank", most_turned_deg=73.0, most_turned_frame=47.0)
+    assert turned[0].startswith(far)
+    assert "  The fit turns the left shank away from the recording by 73° (frame 47)" in turned
+    assert lines(most_turned="left toe", most_turned_deg=73.0) == lines()
+
+
+def test_a_slide_under_load_that_shows_is_told_though_its_line_holds() -> None:
+    problem = MotionProblem()
+    made = report(adapt(fitted_hop(), problem), problem, Origin("hop"))
+
+    def sliding(mm: float) -> list[str]:
+        """What the headline says of it."""
+        lines = tuple(
+            replace(line, value=mm, where="Left toe 2", frame=30.0, holds=True)
+            if line.item is CertificateItem.SLIDE
+            else line
+            for line in made.certificate
+        )
+        return [line for line in headline(replace(made, certificate=lines)) if "slides" in line]
+
+    assert sliding(1.9) == []
+    assert sliding(4.07) == [
+        "  a loaded point slides by 4.07 mm (Left toe 2, frame 30): limit 5 mm"
+    ]
 
 
 def test_where_nothing_gave_way_nothing_is_said_of_it() -> None:

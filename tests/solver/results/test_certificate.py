@@ -14,6 +14,7 @@ from hangtime.solver.data.reports.certificate import CertificateItem as Item
 from hangtime.solver.data.reports.certificate import CertificateLine
 from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.data.reports.report import Report
+from hangtime.solver.data.requests import Lift, Requests
 from hangtime.solver.results.certificate import friction_used, loaded_drifts
 from hangtime.solver.results.report import report
 from hangtime.solver.results.torque_curve import exact_torques
@@ -144,10 +145,16 @@ def test_headlines_say_no_more_than_is_true() -> None:
     assert "loading rate" not in far  # the least of them
 
 
+def test_of_a_fit_alone_no_line_is_compared_with_that_fit() -> None:
+    assert {each.recorded for each in found().certificate} == {None}
+
+
 def test_what_the_recording_has_alike_is_told_apart_from_what_an_edit_did() -> None:
-    own = [each for each in found().certificate if each.item not in (Item.FIT_RMS, FIT_WORST)]
+    lift = replace(PROBLEM, requests=Requests(lifts=(Lift("None", "flight 1"),)))
+    edited = report(plain(), lift, ORIGIN)
+    own = [each for each in edited.certificate if each.item not in (Item.FIT_RMS, FIT_WORST)]
     assert [each.recorded for each in own] == pytest.approx([each.value for each in own])
-    assert line(FIT_WORST).recorded is None
+    assert line(FIT_WORST, edited).recorded is None
 
     def text(recorded: float = 2.0, **values: float) -> list[str]:
         """The headline where these lines have a limit of 1, and so much in the recording."""
