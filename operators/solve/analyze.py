@@ -74,7 +74,6 @@ from .task import Task, TaskOperator, answered
 
 # rms of the joint centres' distance, cm
 CLOSENESS_WORDS = ((1.5, "very close to the recording"), (3.0, "close to the recording"))
-HEIGHTS = (0.7, 3.0)  # m; beyond, a figure was imported at a wrong scale
 USUAL_HEIGHT = 1.75  # m
 MOST_SNAPS = 3  # of the frame range to a cycle; the last only confirms
 ORPHAN = (
@@ -212,7 +211,8 @@ def analysis(
         problem = asked(recording)
         answer = yield from _analysed(armature, recording, problem)
     contacts, flights = len(answer.schedule.contacts), len(answer.schedule.flights)
-    odd = None if problem.height is not None else _odd_height(armature.name, answer.height)
+    factor = answer.odd_size
+    odd = None if factor is None else OddHeight(armature.name, answer.height, factor)
     if odd is not None and (_is_carried(answer) or not flights):
         raise odd
     unseen = [each for each in answer.unseen if isinstance(each, UnseenSupport)]
@@ -341,12 +341,6 @@ def _analysed(
 
 def _ask(recording: Recording, problem: MotionProblem) -> PendingRequest:
     return shared().ask(RequestKind.ANALYSE, recording, problem)
-
-
-def _odd_height(armature: str, height: float) -> OddHeight | None:
-    """A fault where a figure of this height, m, is nobody's."""
-    low, high = HEIGHTS
-    return None if low < height < high else OddHeight(armature, height, USUAL_HEIGHT / height)
 
 
 class FitOperator(TaskOperator, bpy.types.Operator):

@@ -129,7 +129,8 @@ class Analysed:
     bones: by the part of the body that they move ("left foot"). fleshed: names of the bodies whose
     solid shapes are from the mesh. cycle: whose frames these are,
     where the motion shall repeat. unseen: where something unseen carries the body. backwards: the
-    ground phases whose forward is at the body's back.
+    ground phases whose forward is at the body's back. odd_size: what makes a person of a figure
+    that was read at a wrong scale; None of others.
     """
 
     id: int
@@ -142,6 +143,7 @@ class Analysed:
     cycle: Cycle | None = None
     unseen: tuple[CarriedBy, ...] = ()
     backwards: tuple[str, ...] = ()
+    odd_size: float | None = None
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from ..data.scene import SceneObject
 from ..doctor.examination.diagnose import diagnose
 from ..doctor.examination.ground import as_stood
 from ..doctor.examination.repair import as_asked, unplaced, unplaced_skin
+from ..doctor.examination.scales import odd_size
 from ..doctor.repairs import Repairs
 from ..doctor.stance.feet import find_feet
 from ..fitting.fit import Fit
@@ -230,6 +231,9 @@ def _analysed(request: int, subject: Subject) -> Analysed:
         subject.cycle,
         subject.analysis.unseen,
         backward_stances(performance, schedule),
+        None
+        if subject.problem.height is not None
+        else odd_size(performance.recording, subject.height, subject.problem.bones),
     )
 
 

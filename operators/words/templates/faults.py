@@ -241,7 +241,7 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     "motion, as the doctor's repair of drift does (Examine, or the command doctor), or choose a "
     "recording that moves over the ground.",
     faults.OddHeight: "“{armature}” is {metres:.3g} m tall, so gravity does not fit its motion; "
-    "import it again at {factor:plain} times the scale, or scale its object so.",
+    "import it again at {factor:.4g} times the scale, or scale its object so.",
     faults.OddScale: "“scale = {scale:g}” makes the figure {metres:.3g} m tall, which nobody is; "
     "{factor:plain} would make a person of it.",
     faults.OutsideKeys: "In the chosen frames “{armature}” has no keys (they lie from frame "

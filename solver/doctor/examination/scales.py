@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import cache
 
 from ...analysis.analyse import agreed_rate
-from ...analysis.performance import Performance, find_contacts
+from ...analysis.performance import Performance, find_contacts, perform
+from ...body.character import build_character
 from ...data.constants import STANDARD_GRAVITY
 from ...data.contacts import ContactSchedule
-from ..falls import Trusted, find_scale, refined
+from ...data.recording import Recording
+from ..falls import ALL, Trusted, find_scale, refined
 from ..finding import Finding, FindingKind
 from ..repairs import Repairs
 from ..stance.footing import spans_of
 from ..stance.in_place import find_in_place
+from .repair import repaired
+
+READ_HEIGHTS = (0.7, 3.0)  # m; beyond, a figure was read at a wrong scale, or is nobody's
 
 
 def find_scales(
@@ -39,6 +45,22 @@ def find_scales(
     if clock is None or clock.kind is FindingKind.SIZE:
         return (scale,)
     return replace(scale, alternative=None), replace(clock, alternative=None)
+
+
+def odd_size(recording: Recording, height: float, chosen: Mapping[str, str]) -> float | None:
+    """What makes a person of a figure of so many m that was read at a wrong scale, as `diagnose`
+    tells it; None of others. chosen: bones by parts of the body, as in a problem."""
+    if READ_HEIGHTS[0] < height < READ_HEIGHTS[1]:
+        return None
+
+    @cache
+    def performed(repairs: Repairs) -> Performance:
+        placed = repaired(recording, repairs, chosen)
+        return perform(placed, build_character(placed, chosen=chosen))
+
+    scales = find_scales(performed, lambda repairs: find_contacts(performed(repairs)), ALL)
+    sizes = (each.remedy.scale for each in scales if each.remedy)
+    return next((size for size in sizes if size != 1.0), None)
 
 
 def _slow_fall(performance: Performance, schedule: ContactSchedule) -> Finding | None:
