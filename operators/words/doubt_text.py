@@ -17,7 +17,7 @@ from ...solver.doctor.finding import Finding
 from ...solver.doctor.repairs import UpAxis
 from .doctor_text import finding_sentence
 from .messages import length
-from .request_doubt_text import highest, quoted, request_doubts, there
+from .request_doubt_text import A_FRAME, beyond_doubts, highest, quoted, request_doubts, there
 
 if TYPE_CHECKING:  # which Blender's own module is needed for, and batches do without
     from ...bridge.scene.moving_empties import LeftEmpty
@@ -25,7 +25,6 @@ if TYPE_CHECKING:  # which Blender's own module is needed for, and batches do wi
 # Body mass over squared stature, kg/m². Adults above 40 have obesity of the third class; of healthy
 # children the leanest have 13 (WHO).
 LEANEST, HEAVIEST = 12.0, 45.0
-A_FRAME = 1.0
 MOST_AWAY = 30.0  # m; the longest triple jumps go 18
 MOST_BELOW = 0.5  # m, of a point below the ground
 MOST_DAMAGES = 4
@@ -50,6 +49,7 @@ def doubts_of(
     return [
         *frame_doubts(problem.frames or (None, None), frames),
         *(line for mass in masses for line in _of_build(mass, problem.height or height)),
+        *beyond_doubts(problem, frames),
         *request_doubts(problem, phases, leaps),
     ]
 

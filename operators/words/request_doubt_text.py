@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from math import degrees, tau
+from typing import Protocol
 
 import numpy as np
 
 from ...solver.analysis.leaps import Leap
+from ...solver.arrays import FloatArray
 from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.contacts import Phase, PhaseKind
 from ...solver.data.problem import MotionProblem, OffsetAxes
-from ...solver.data.requests import AddedMass, PhaseTiming
+from ...solver.data.requests import AddedMass, PhaseTiming, When
 from ...solver.data.scene import SceneObject
 from .messages import length
 
+A_FRAME = 1.0
 MOST_CARRIED = 1.0  # body masses; a weightlifter moves more, but does not jump with it
 LONGEST_ARM = 2.0  # m from a bone to what it carries
 MOST_GRAVITY, LEAST_GRAVITY = 25.0, 0.2  # m/s², Jupiter's, and that of the largest asteroids
@@ -38,6 +41,16 @@ STANDING = 0.5  # m/s, of a figure that sways
 RUN_UP = 0.5  # s: m more for each m/s of run-up; the longest long jump goes 8.95 m from 11 m/s
 
 
+class _Timed(Protocol):
+    """A request of some frames, or all."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def when(self) -> When: ...
+
+
 def request_doubts(
     problem: MotionProblem, phases: Sequence[Phase], leaps: Sequence[Leap]
 ) -> list[str]:
@@ -51,6 +64,25 @@ def request_doubts(
         *_of_leaps(problem, leaps),
         *_of_limits(problem),
         *_of_speeds(problem.scene),
+    ]
+
+
+def beyond_doubts(problem: MotionProblem, frames: Sequence[float] | FloatArray) -> list[str]:
+    """A line for each request whose range of frames goes beyond those (T,) that are adapted; what
+    is all beside them is refused, and where there are no frames these do not tell."""
+    if not len(frames):
+        return []
+    first, last = float(frames[0]), float(frames[-1])
+    r = problem.requests
+    limits: tuple[_Timed, ...] = (*r.angles, *r.cones, *r.twists, *r.torques, *r.forces)
+    timed: tuple[_Timed, ...] = (*r.points, *limits, *r.poses, *r.orientations)
+    return [
+        f"“{each.name}” is about frames {span[0]:.9g} to {span[1]:.9g}, but the adapted frames are "
+        f"{first:g} to {last:g}, with which it ends"
+        for each in timed
+        if (span := each.when.frames) is not None
+        and (span[0] < first - A_FRAME or last + A_FRAME < span[1])
+        and (first <= span[1] and span[0] <= last)
     ]
 
 

@@ -14,6 +14,7 @@ from hangtime.operators.words.doubt_text import (
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import (
     AddedMass,
+    AngleLimit,
     BodyChange,
     PointRequest,
     Requests,
@@ -61,6 +62,26 @@ def test_usual_amounts_are_not_asked_about(problem: MotionProblem) -> None:
 def test_amounts_that_nobody_means_are_told(problem: MotionProblem, words: str) -> None:
     (told,) = doubts_of(problem, 1.76, FRAMES)
     assert words in told
+
+
+@pytest.mark.parametrize(
+    ("asked", "told"),
+    [
+        ((1.0, 900.0), True),
+        ((-50.0, 200.0), True),
+        ((150.0, 200.0), False),
+        ((800.0, 900.0), False),
+    ],
+)
+def test_a_request_that_goes_on_beyond_the_clip_is_told(
+    asked: tuple[float, float], *, told: bool
+) -> None:
+    """What is all beside it is refused."""
+    limit = AngleLimit("Bent", "Leg.L", None, 1.9, When(frames=asked))
+    lines = doubts_of(MotionProblem(requests=Requests(angles=(limit,))), 1.76, FRAMES)
+    begins, ends = FRAMES[0], FRAMES[-1]
+    words = f"“Bent” is about frames {asked[0]:g} to {asked[1]:g}, but the adapted frames are "
+    assert lines == ([f"{words}{begins:g} to {ends:g}, with which it ends"] if told else [])
 
 
 HEADS = np.array([[[0.0, 0.0, 1.0], [0.1, 0.0, 0.1]], [[2.0, 0.0, 1.0], [2.1, 0.0, 0.1]]])
