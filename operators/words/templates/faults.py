@@ -349,8 +349,8 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     "weights, but its joint has {needed} angles; give one weight each.",
     faults.DependentRows: "Of the {rows} rows of the reduction's matrix only {rank} say something "
     "that the others do not; leave out the empty and the repeated ones.",
-    faults.UnknownPhase: "The pin “{pin}” names the phase “{phase}”, on which nothing touches the "
-    "ground; name one of {known:names}.",
+    faults.UnknownPhase: "The pin “{pin}” is about “{phase}”, which is no ground phase of the "
+    "clip; choose one of {known:names}.",
     faults.GroundNotThere: "The pin “{pin}” stands on “{object}” from frame {needed[0]:.1f} to "
     "{needed[1]:.1f} ({phase}), but its motion is known from frame {known[0]:g} to {known[1]:g} "
     "only; key it for all of these frames, or pin another phase.",
