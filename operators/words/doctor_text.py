@@ -20,9 +20,9 @@ EXCHANGED = (
     "or ends, and if they are exchanged back it does not."
 )
 
-# {n}: the number, {count}: of frames, with its verb, {speed} and {way}: of it, without its sign, and
-# upwards or downwards, {amount}: with its unit, {part}, {where}: "at frame 12" or "in frames 3 to
-# 9, 40"; "" without frames.
+# {n}: the number, {count}: of frames, with its verb, {speed} and {way}: of it, without its sign,
+# and upwards or downwards, {amount}: with its unit, {part}, {where}: "at frame 12" or "in frames 3
+# to 9, 40"; "" without frames.
 # {clock}: how the recording is played. {end}: what hangs on the part and leaves its place.
 SENTENCES = {
     FindingKind.UP_AXIS: "The figure lies: another axis than Z points from its feet to its head.",

@@ -49,7 +49,6 @@ PARTING = (FindingKind.JUMP, FindingKind.LEAP)
 WHOLE_BODY = (FindingKind.SLIDING, FindingKind.IN_PLACE, FindingKind.FLOATING)
 LEAST_KEPT = 0.5  # s; of less nobody makes a range
 GAPS = (FindingKind.DROPPED_FRAMES, FindingKind.JUMP)
-LEAPING = (*GAPS, FindingKind.RETIMED)  # at which the whole body is jerked downwards, too
 MASS_BY_SQUARE = (12.0, 42.0)  # kg/m²; children have 14, the heaviest who jump 40
 FEWEST_FRAMES = 5  # which have a fourth difference
 SLOWEST = 1.0  # s from frame to frame, Blender's slowest rate: a wrong one is told, and its remedy
@@ -167,9 +166,15 @@ def diagnose(
     trusted, seconds = _trusted(found, rate), float(recording.times[-1])
     scales = find_scales(performed, touched, trusted)
     told(0.95)
+
+    def find_part(placed: Repairs) -> Finding | None:
+        """A part that was retimed; where all is, none is told apart."""
+        return None if scales else find_retimed(performed(placed), trusted)
+
+    part = find_part(Repairs())
     leaps = find_leaps(performed(joined_remedies(scales)))
-    near = LEAP_WINDOW * recording.rate
-    if leaps is not None and not _are_at(leaps, _places(found, *LEAPING), near):
+    near, torn = LEAP_WINDOW * recording.rate, _places(found, *GAPS)
+    if leaps is not None and not _are_at(leaps, torn + (part.frames if part else ()), near):
         found.append(leaps)
     kept = _kept(found, frames, rate)
     if kept is not None and any(finding.kind in PARTING for finding in found):
@@ -194,7 +199,7 @@ def diagnose(
         found.append(Finding(FindingKind.TOO_SHORT, seconds, "s"))
     placed = joined_remedies((*scales, *stance.drifts))
     stood = as_stood(performed(placed), scene)
-    retimed = None if scales else find_retimed(performed(placed), trusted)
+    retimed = find_part(placed)
     if retimed is not None:
         found.append(retimed)
     found += stance.drifts

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import reduce
-from typing import NamedTuple
 
 from ...analysis.performance import Performance
 from ...data.contacts import ContactSchedule
@@ -18,7 +17,8 @@ LIFTING = (FindingKind.TILTED, FindingKind.RISING, FindingKind.FLOATING)
 """What moves feet that stand up and down, so that the wrong moments are taken for falls."""
 
 
-class Stance(NamedTuple):
+@dataclass(frozen=True)
+class Stance:
     """What is wrong with how the body stands. drifts: that its floor slopes, and that it drifts or
     floats. footing: on what height it stands without these, and what carries it."""
 

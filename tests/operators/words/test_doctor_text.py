@@ -55,7 +55,9 @@ def test_bones_keep_their_names_at_the_start_of_a_sentence_and_places_are_counte
 
 
 def test_a_single_frame_is_one() -> None:
-    one, four = (Finding(FindingKind.DROPPED_FRAMES, n, "frames", ((8.0, 8.0),)) for n in (1.0, 4.0))
+    one, four = (
+        Finding(FindingKind.DROPPED_FRAMES, n, "frames", ((8.0, 8.0),)) for n in (1.0, 4.0)
+    )
     assert finding_sentence(one).startswith("About 1 frame is missing: ")
     assert finding_sentence(four).startswith("About 4 frames are missing: ")
 
