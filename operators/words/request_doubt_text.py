@@ -78,7 +78,7 @@ def beyond_doubts(problem: MotionProblem, frames: Sequence[float] | FloatArray) 
     timed: tuple[_Timed, ...] = (*r.points, *limits, *r.poses, *r.orientations)
     return [
         f"“{each.name}” is about frames {span[0]:.9g} to {span[1]:.9g}, but the adapted frames are "
-        f"{first:g} to {last:g}, with which it ends"
+        f"{first:g} to {last:g}, and it holds in these alone"
         for each in timed
         if (span := each.when.frames) is not None
         and (span[0] < first - A_FRAME or last + A_FRAME < span[1])
