@@ -81,7 +81,9 @@ def test_a_request_that_goes_on_beyond_the_clip_is_told(
     lines = doubts_of(MotionProblem(requests=Requests(angles=(limit,))), 1.76, FRAMES)
     begins, ends = FRAMES[0], FRAMES[-1]
     words = f"“Bent” is about frames {asked[0]:g} to {asked[1]:g}, but the adapted frames are "
-    assert lines == ([f"{words}{begins:g} to {ends:g}, and it holds in these alone"] if told else [])
+    assert lines == (
+        [f"{words}{begins:g} to {ends:g}, and it holds in these alone"] if told else []
+    )
 
 
 HEADS = np.array([[[0.0, 0.0, 1.0], [0.1, 0.0, 0.1]], [[2.0, 0.0, 1.0], [2.1, 0.0, 0.1]]])
