@@ -22,6 +22,7 @@ from ..figure import Figure
 from ..finding import Finding, FindingKind
 from ..repairs import Repairs
 from .flat_feet import FLAT_SPEED, STANDING_SPEED_UP, FlatSamples, agreed
+from .to_and_fro import go_against
 from .trembling_feet import drift_of_stances
 
 FLOOR_OFF = 0.03  # m, from the world's 0
@@ -141,7 +142,7 @@ def _sinking(performance: Performance) -> Finding | None:
 def find_sliding(performance: Performance, figure: Figure) -> Finding | None:
     """Feet that in all stances slide the same way at the same speed: the whole body drifts. By the
     lowest points of feet, by feet that stand flat, which tell less of a drift, or first, where feet
-    tremble, by whole stances.
+    tremble, by whole stances. What sways is as fast for a while, but feet go against it, too.
 
     performance: as seen from what it stands on, in its right size and time.
     """
@@ -151,7 +152,7 @@ def find_sliding(performance: Performance, figure: Figure) -> Finding | None:
         for each in (FlatSamples.of(performance.recording, figure), standing(performance))
     )
     least = max(LEAST_STANCE * rate, share, LEAST_STANDING)
-    told = drift_of_stances(performance.recording, figure)
+    trembling = told = drift_of_stances(performance.recording, figure)
     if told is None and len(flat.speeds) >= least:
         told = _drift(flat, FLAT_DRIFT)
     if told is None and len(lowest.speeds) >= least:
@@ -159,8 +160,11 @@ def find_sliding(performance: Performance, figure: Figure) -> Finding | None:
         told = _drift(lowest, slowest)
     if told is None:
         return None
-    x, y = told
-    return Finding(FindingKind.SLIDING, float(np.hypot(x, y)), "m/s", remedy=Repairs(drift=told))
+    speed = float(np.hypot(*told))
+    # What feet that stand flat tell of a slower one, lowest points, which roll, cannot deny.
+    if (trembling or speed > DRIFT) and go_against(performance, told):
+        return None
+    return Finding(FindingKind.SLIDING, speed, "m/s", remedy=Repairs(drift=told))
 
 
 @dataclass(frozen=True)

@@ -106,7 +106,7 @@ def _stances(recording: Recording, figure: Figure) -> _Stances | None:
     ends = [foot_ends(recording, figure, side) for side in SIDES]
     middles = [0.5 * (ankle + ball) for ankle, ball in ends]
     ankles, balls = (
-        [_slopes(end, half, recording.rate) for end in each] for each in zip(*ends, strict=True)
+        [slopes(end, half, recording.rate) for end in each] for each in zip(*ends, strict=True)
     )
     speeds = [0.5 * (ankle + ball) for ankle, ball in zip(ankles, balls, strict=True)]
     lowest = np.min([middle[:, 2] for middle in middles], axis=0)
@@ -176,7 +176,7 @@ def _long(stands: BoolArray, rate: float) -> Iterator[slice]:
             yield slice(first, last + 1)
 
 
-def _slopes(track: FloatArray, half: int, rate: float) -> FloatArray:
+def slopes(track: FloatArray, half: int, rate: float) -> FloatArray:
     """(T, 3) m/s, of lines through the frames up to `half` before and after each, or next to an end
     through as many. track: (T, 3) m, T more than twice `half`. rate: frames a second."""
     since = np.arange(-half, half + 1) / rate

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hangtime.devtools.doctor.combined import both
-from hangtime.devtools.doctor.damages.damage import Damage
+from hangtime.devtools.doctor.damages.damage import Damage, at_rate
 from hangtime.devtools.doctor.damages.poses import noisy
 from hangtime.devtools.doctor.damages.whole_body import (
     in_place,
@@ -70,6 +70,21 @@ def test_drift_is_what_both_stances_tell(slid: tuple[float, float], told: bool) 
     moved = replace(recording, heads=recording.heads + way[:, None])
     found = find_sliding(perform(moved, character()), figure())
     assert (found is not None) is told
+
+
+@pytest.mark.parametrize(
+    ("name", "metres"),
+    [("131_03_hop.bvh", 0.12), ("131_03_hop.bvh", 0.15), ("cmu1_jumping_jacks.bvh", 0.15)],
+)
+def test_a_body_that_sways_does_not_drift(name: str, metres: float) -> None:
+    """It was told a drift that its longer stances have and others go against: taken out, it left
+    the body five times further off."""
+    recording = load_recording(name)
+    first = recording.frames[0]
+    part = at_rate(recording.window(first, first + 5.0 * recording.rate), 24.0)
+    swayed, drifted = swaying(metres, 4.0).of(part).recording, sliding(0.2).of(part).recording
+    assert find_sliding(perform(swayed, build_character(swayed)), figure_of(swayed)) is None
+    assert find_sliding(perform(drifted, build_character(drifted)), figure_of(drifted)) is not None
 
 
 @pytest.mark.parametrize(("landed", "floors"), [(False, 0), (True, 1)])
