@@ -28,7 +28,9 @@ LEAST_STANCE = 0.03  # s
 FEWEST = 3  # stances: a plane through fewer leaves nothing to tell it by
 UNEVEN = 0.01  # m, standard deviation of places' heights; honest ones by up to that
 OFF = 0.012  # m, rms, by which balls that stand miss the plane; honest ones by up to 0.008
-LEFT = 0.4  # of how much the places' heights differ, by the plane; a single kerb leaves 0.45
+# Of how much the places' heights differ, by the plane, for each degree of freedom; a single kerb
+# leaves 0.45, and a walk of four stances on a level floor 0.55.
+LEFT = 0.4
 # A rise leaves so much less than the plane where it is why; in runs, whose short stances tell the
 # one hardly from the other, and whose balls sink as they are loaded, a camera is likelier off.
 SURELY_RISES = 1.5
@@ -103,10 +105,11 @@ def _stances(recording: Recording, figure: Figure, beneath: Heights) -> Iterator
 @dataclass(frozen=True)
 class _Plane:
     """Its slope (2,), upwards along x and y, and how far, m, left balls are above it and right ones
-    below."""
+    below. spent: degrees of freedom that its places' heights lose to these, 0 to 3."""
 
     slope: FloatArray
     apart: float
+    spent: float
 
     @staticmethod
     def through(stances: list[_Stance]) -> _Plane:
@@ -115,13 +118,16 @@ class _Plane:
         known = np.column_stack([places[:, :2], [stance.side for stance in stances]])
         known = known - known.mean(axis=0)
         likely = np.diag((HEIGHT / np.array([SLOPE, SLOPE, APART])) ** 2)
-        found = np.linalg.solve(known.T @ known + likely, known.T @ places[:, 2])
-        return _Plane(found[:2], float(found[2]))
+        inverse = np.linalg.inv(known.T @ known + likely)
+        found = inverse @ known.T @ places[:, 2]
+        return _Plane(found[:2], float(found[2]), float(np.trace(inverse @ known.T @ known)))
 
     def explains(self, stances: list[_Stance]) -> bool:
-        """Whether it is why heights differ, and not that feet are on things of their own."""
-        uneven = _uneven(stances)
+        """Whether it is why heights differ, and not that feet are on things of their own. By what
+        is left for each degree of freedom: near three or four stances some plane goes always."""
+        uneven, free = _uneven(stances), len(stances) - 1.0
         left = float(np.std([self._above(each, each.place[None]).item() for each in stances]))
+        left *= np.sqrt(free / (free - self.spent))
         return uneven > UNEVEN and left < LEFT * uneven and abs(self.apart) < MOST_APART
 
     def off(self, stances: list[_Stance]) -> float:
