@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ...solver.analysis.grounding import strays
+from ...solver.analysis.grounding import Stray, strays
 from ...solver.analysis.leaps import Leap, Stand, leaps
 from ...solver.analysis.pinned_places import backward_stances, pinned_places
+from ...solver.data.contacts import Contact
 from ...solver.data.faults import Fault
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
@@ -27,6 +28,8 @@ from ..words.doubt_text import (
 )
 from ..words.request_doubt_text import contact_doubts, direction_doubts
 
+SNAPPED = 0.1  # s, by which an end of an edited contact may have been put elsewhere
+
 
 def doubts_about(
     problem: MotionProblem, repairs: Repairs | None, subject: Subject, origin: Origin
@@ -42,7 +45,7 @@ def doubts_about(
     )
     found = subject.analysis
     doubts += direction_doubts(problem, backward_stances(found.performance, found.schedule))
-    doubts += contact_doubts(problem, _strays(subject))
+    doubts += contact_doubts(_strays(subject), 1.0 / subject.factor, subject.recording.frame_at)
     unscaled = scaled_recording(subject.recording, 1.0 / subject.factor)
     doubts += distance_doubts(problem, unscaled.heads)
     doubts += damage_doubts(faults_of(unscaled, problem))
@@ -76,10 +79,28 @@ def _leaps(subject: Subject) -> list[Leap]:
     return leaps(schedule.phases, stands, recording.times, recording.heads)
 
 
-def _strays(subject: Subject) -> dict[str, tuple[float, float]]:
-    """In lengths as recorded, with the scene's frames."""
-    found, recording = subject.analysis, subject.recording
-    return {
-        name: (away / subject.factor, float(recording.frames[0]) + recording.rate * when)
-        for name, (away, when) in strays(found.schedule, found.performance).items()
-    }
+def _strays(subject: Subject) -> list[Stray]:
+    """Of the contacts that the artist added, or edited."""
+    found, problem, recording = subject.analysis, subject.problem, subject.recording
+    edited = {edit.name for edit in problem.contacts}
+
+    def is_of_artist(contact: Contact) -> bool:
+        """By name, or by when it is: those of its point are counted anew after an addition."""
+        if contact.name in edited:
+            return True
+        first, last = (recording.frame_at(at) for at in (contact.start, contact.end))
+        near = SNAPPED * recording.rate
+        return any(
+            each.name.rpartition(" ")[0] == contact.point
+            and (_near(each.start_frame, first, near) or _near(each.end_frame, last, near))
+            for each in problem.contacts
+        ) or any(
+            each.point == contact.point and each.start_frame < last and first < each.end_frame
+            for each in problem.added
+        )
+
+    return [s for s in strays(found.schedule, found.performance) if is_of_artist(s.contact)]
+
+
+def _near(asked: float | None, found: float, reach: float) -> bool:
+    return asked is not None and abs(asked - found) <= reach

@@ -187,8 +187,8 @@ def turned_away_lines(fit: FitQuality) -> list[str]:
     """A limb that the fit turns away from the recording, if there is one: a line."""
     if not fit.is_turned:
         return []
-    turned = f"{fit.most_turned_deg:.0f}° (frame {fit.most_turned_frame:.0f})"
-    return [f"The fit turns the {fit.most_turned} away from the recording by {turned}"]
+    turned = f"{fit.turned_limb_deg:.0f}° (frame {fit.turned_limb_frame:.0f})"
+    return [f"The fit turns the {fit.turned_limb} away from the recording by {turned}"]
 
 
 def unseen_lines(found: Sequence[UnseenSupportReport]) -> list[str]:

@@ -146,6 +146,8 @@ class _Formatter(Formatter):
                 return ", ".join(f"{number:g}" for number in value)
             case "plain":  # 100, not 1e+02
                 return f"{float(f'{value:.2g}'):g}"
+            case "digits":  # four, likewise
+                return f"{float(f'{value:.4g}'):.10g}"
             case "percent":
                 return f"{100.0 * value:.0f} %"
             case "length":

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from math import degrees, tau
 from typing import Protocol
 
 import numpy as np
 
+from ...solver.analysis.grounding import Stray
 from ...solver.analysis.leaps import Leap
 from ...solver.arrays import FloatArray
 from ...solver.data.constants import STANDARD_GRAVITY
@@ -97,16 +98,21 @@ def direction_doubts(problem: MotionProblem, backwards: Collection[str]) -> list
     return [f"{quoted(names)}: forward is the way it travels, at the body's back"] if names else []
 
 
-def contact_doubts(problem: MotionProblem, strays: Mapping[str, tuple[float, float]]) -> list[str]:
-    """A line for each contact of the artist's that lasts while its point is elsewhere. strays: how
-    far, m, each contact's point goes from its place at most, and the scene's frame."""
-    edited = {edit.name for edit in problem.contacts} | {added.point for added in problem.added}
+def contact_doubts(
+    strays: Iterable[Stray], factor: float, frame_at: Callable[[float], float]
+) -> list[str]:
+    """A line for each contact of the artist's that lasts while its point is elsewhere.
+
+    strays: theirs, in true lengths. factor: of these to those as recorded. frame_at: the scene's
+    frame at an instant, s.
+    """
     return [
-        f"“{name}” lasts while the recording has its point {length(away)} from where it touches "
-        f"(frame {frame:.0f}): where no motion holds it there, it will be let go. Let it last for "
-        "as long as the point stands"
-        for name, (away, frame) in strays.items()
-        if name in edited and away > MOST_STRAY
+        f"“{each.contact.name}” lasts while the recording has its point "
+        f"{length(factor * each.away)} from where it touches (frame {frame_at(each.when):.0f}): "
+        "where no motion holds it there, it will be let go. Let it last for as long as the point "
+        "stands"
+        for each in strays
+        if each.away > MOST_STRAY
     ]
 
 

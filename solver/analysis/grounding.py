@@ -6,8 +6,8 @@ as a sole gives, and as the recording shows it. A foot that slides is at one pla
 next; in between it is not loaded.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -117,18 +117,24 @@ def disjoint(schedule: ContactSchedule) -> ContactSchedule:
     return replace(schedule, contacts=tuple(sorted(kept, key=lambda c: (c.start, c.point))))
 
 
-def strays(schedule: ContactSchedule, performance: Performance) -> dict[str, tuple[float, float]]:
-    """How far, m, and when, s, the point of each contact on the floor is from its place at most, in
-    the recording and while it lasts."""
+@dataclass(frozen=True)
+class Stray:
+    """How far, m, and when, s, a contact's point is from its place at most, while it lasts."""
+
+    contact: Contact
+    away: float
+    when: float
+
+
+def strays(schedule: ContactSchedule, performance: Performance) -> Iterator[Stray]:
+    """Of each contact on the floor, in the recording."""
     points, times = contact_points(performance)[0], performance.times
-    found = {}
     for contact in (each for each in schedule.contacts if each.on is None):
         lasts = np.flatnonzero((times >= contact.start) & (times <= contact.end))
-        away = np.linalg.norm(points[contact.point].track[lasts] - contact.place, axis=1)
         if len(lasts):
+            away = np.linalg.norm(points[contact.point].track[lasts] - contact.place, axis=1)
             worst = int(np.argmax(away))
-            found[contact.name] = float(away[worst]), float(times[lasts[worst]])
-    return found
+            yield Stray(contact, float(away[worst]), float(times[lasts[worst]]))
 
 
 def _overlap(before: Contact, after: Contact) -> bool:

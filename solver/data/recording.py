@@ -94,6 +94,10 @@ class Recording:
         """First and last frame."""
         return float(self.frames[0]), float(self.frames[-1])
 
+    def frame_at(self, time: float) -> float:
+        """The scene's frame, whole or not, at an instant, s."""
+        return float(self.frames[0]) + self.rate * time
+
     def index(self, bone: str) -> int:
         """Index of the bone called `bone`. Raises KeyError where there is none."""
         for i, b in enumerate(self.bones):

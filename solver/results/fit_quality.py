@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import FloatArray
+from ..body.anatomy import Part
 from ..data.reports.report import FitQuality
 from ..fitting.fit import Fit
 from ..numerics.rotations import rotation_vector
@@ -24,7 +25,10 @@ def fit_quality(fit: Fit) -> FitQuality:
     performance = fit.performance
     apart = fit.motion.joint_centres(performance.times) - performance.centres
     each = np.sqrt((apart**2).sum(axis=2).mean(axis=1))  # frame by frame
-    joint, turned = _worst(fit, np.linalg.norm(apart, axis=2)), _worst(fit, _turns(fit))
+    turns, bodies = _turns(fit), performance.character.bodies
+    limbs = np.where([body.part is Part.TOE for body in bodies], 0.0, turns)
+    joint = _worst(fit, np.linalg.norm(apart, axis=2))
+    turned, limb = _worst(fit, turns), _worst(fit, limbs)
     whole = (f for f in flights(fit) if f.start > 0.0 and f.end < fit.schedule.duration)
     lost = [100.0 * (apex(fit.motion, f) - recorded_apex(fit, f)) for f in whole]
     return FitQuality(
@@ -38,6 +42,9 @@ def fit_quality(fit: Fit) -> FitQuality:
         most_turned=turned.body,
         most_turned_deg=float(np.degrees(turned.off)),
         most_turned_frame=turned.frame,
+        turned_limb=limb.body,
+        turned_limb_deg=float(np.degrees(limb.off)),
+        turned_limb_frame=limb.frame,
     )
 
 

@@ -241,7 +241,7 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     "motion, as the doctor's repair of drift does (Examine, or the command doctor), or choose a "
     "recording that moves over the ground.",
     faults.OddHeight: "“{armature}” is {metres:.3g} m tall, so gravity does not fit its motion; "
-    "import it again at {factor:.4g} times the scale, or scale its object so.",
+    "import it again at {factor:digits} times the scale, or scale its object so.",
     faults.OddScale: "“scale = {scale:g}” makes the figure {metres:.3g} m tall, which nobody is; "
     "{factor:plain} would make a person of it.",
     faults.OutsideKeys: "In the chosen frames “{armature}” has no keys (they lie from frame "
@@ -349,8 +349,8 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     "weights, but its joint has {needed} angles; give one weight each.",
     faults.DependentRows: "Of the {rows} rows of the reduction's matrix only {rank} say something "
     "that the others do not; leave out the empty and the repeated ones.",
-    faults.UnknownPhase: "The pin “{pin}” is about “{phase}”, which is no ground phase of the "
-    "clip; choose one of {known:names}.",
+    faults.UnknownPhase: "The pin “{pin}” is about “{phase}”, which is no phase of the clip in "
+    "which something touches the ground; choose one of {known:names}.",
     faults.GroundNotThere: "The pin “{pin}” stands on “{object}” from frame {needed[0]:.1f} to "
     "{needed[1]:.1f} ({phase}), but its motion is known from frame {known[0]:g} to {known[1]:g} "
     "only; key it for all of these frames, or pin another phase.",

@@ -58,7 +58,6 @@ class ReductionReport:
 
 FAR_JOINT = 15.0  # cm, of one joint off the recording in one frame; good fits have 4 to 12
 FAR_TURNED = 45.0  # degrees, likewise; good fits have 15 to 43
-TOE = "toe"
 
 
 @dataclass(frozen=True)
@@ -68,7 +67,8 @@ class FitQuality:
     pelvis_apex_difference_cm: of the flight where it is most; None where the clip holds none from
     take-off to landing, whose apex may be beyond its ends. worst_frame: the one whose joint centres
     are furthest off, worst_frame_rms_cm of rms. worst_joint: the body whose joint is furthest off
-    in any frame, "" where it is not told. most_turned: the body that is turned away furthest.
+    in any frame, "" where it is not told. most_turned: the body that is turned away furthest;
+    turned_limb: likewise of all but toes, whose turns are hardly seen.
     """
 
     joint_centres_rms_cm: float
@@ -81,11 +81,14 @@ class FitQuality:
     most_turned: str = ""
     most_turned_deg: float = 0.0
     most_turned_frame: float = 0.0
+    turned_limb: str = ""
+    turned_limb_deg: float = 0.0
+    turned_limb_frame: float = 0.0
 
     @property
     def is_turned(self) -> bool:
-        """Whether a limb points elsewhere; a toe's turn is hardly seen."""
-        return self.most_turned_deg > FAR_TURNED and not self.most_turned.endswith(TOE)
+        """Whether a limb points elsewhere."""
+        return self.turned_limb_deg > FAR_TURNED
 
     @property
     def is_far_somewhere(self) -> bool:

@@ -164,24 +164,6 @@ def diagnose(
         return find_contacts(performance, scene)
 
     trusted, seconds = _trusted(found, rate), float(recording.times[-1])
-    scales = find_scales(performed, touched, trusted)
-    told(0.95)
-
-    def find_part(placed: Repairs) -> Finding | None:
-        """A part that was retimed; where all is, none is told apart."""
-        return None if scales else find_retimed(performed(placed), trusted)
-
-    part = find_part(Repairs())
-    leaps = find_leaps(performed(joined_remedies(scales)))
-    near, torn = LEAP_WINDOW * recording.rate, _places(found, *GAPS)
-    if leaps is not None and not _are_at(leaps, torn + (part.frames if part else ()), near):
-        found.append(leaps)
-    kept = _kept(found, frames, rate)
-    if kept is not None and any(finding.kind in PARTING for finding in found):
-        found[:] = _parted(found, frames, kept)
-        recording = recording.window(*kept)  # how it stands elsewhere is no matter, and may differ
-        performed.cache_clear()
-        touched.cache_clear()
 
     def standing(placed: Repairs) -> Stance:
         upright = performed(placed).recording
@@ -191,6 +173,27 @@ def diagnose(
         placed = placed.joined(joined_remedies(drifts))
         footing = find_footing(as_stood(performed(placed), scene), touched(placed))
         return Stance((tilt, *drifts) if tilt else tuple(drifts), tuple(footing))
+
+    def find_part(placed: Repairs) -> Finding | None:
+        """A part that was retimed; where all is, none is told apart."""
+        return None if scales else find_retimed(performed(placed), trusted)
+
+    scales = find_scales(performed, touched, trusted)
+    told(0.95)
+    leaps = find_leaps(performed(joined_remedies(scales)))
+    if leaps is not None and not scales:  # a rise may hide the clock at which these are but falls
+        scales, _ = settled(scales, standing, performed, touched, trusted)
+        leaps = find_leaps(performed(joined_remedies(scales)))
+    part = find_part(Repairs())
+    near, torn = LEAP_WINDOW * recording.rate, _places(found, *GAPS)
+    if leaps is not None and not _are_at(leaps, torn + (part.frames if part else ()), near):
+        found.append(leaps)
+    kept = _kept(found, frames, rate)
+    if kept is not None and any(finding.kind in PARTING for finding in found):
+        found[:] = _parted(found, frames, kept)
+        recording = recording.window(*kept)  # how it stands elsewhere is no matter, and may differ
+        performed.cache_clear()
+        touched.cache_clear()
 
     scales, stance = settled(scales, standing, performed, touched, trusted)
     found += scales

@@ -38,9 +38,16 @@ def repaired(
 
     Raises MissingPart, NotBetweenFrames, NothingLeft.
     """
-    whole = filled(turned(recording, repairs), repairs.missing)
+    beaten = _off_the_beat(turned(recording, repairs), repairs)
+    whole = filled(beaten, repairs.missing)
     still = placed(mended(trimmed(whole, repairs), repairs, chosen), repairs)
     return grounded(still, repairs.mend, chosen)
+
+
+def _off_the_beat(recording: Recording, repairs: Repairs) -> Recording:
+    """Evened before frames are put in, which would break the beat."""
+    found = conversion(recording) if Mend.HELD_FRAMES in repairs.mend and repairs.missing else None
+    return recording if found is None else evened(recording, found)
 
 
 def as_asked(recording: Recording, problem: MotionProblem) -> Recording:

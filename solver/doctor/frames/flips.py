@@ -102,6 +102,8 @@ def _axis(turns: FloatArray, outer: int, inner: int) -> FloatArray:
     """(3,) unit, of the half turn between two frames, as the parent sees it: from where the bone
     would have gone on to."""
     before = min(max(2 * outer - inner, 0), len(turns) - 1)
+    if angles_between(turns[before], turns[outer]) > FLIP:  # it is in another flip
+        before = outer
     expected = turns[outer] @ turns[before].T @ turns[outer]
     turn = rotation_vector(turns[inner] @ expected.T)
     return np.asarray(turn / np.linalg.norm(turn))

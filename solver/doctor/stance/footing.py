@@ -39,6 +39,9 @@ APART = 0.1  # s, and a frame: what stands after it stands anew
 HONEST = 0.03  # m, by which feet go in a stance; as their load shifts they roll and turn
 LEAST_SLID = 0.06  # m, in all stances, likewise
 TOLD_WITHIN = 0.25  # of a drift's way in a stance; feet that roll on a belt leave as much
+# Likewise of several stances together, of which one or another rolls further: by chance four leave
+# as little in one of a thousand cases (Hotelling's T²).
+SEVERAL, TOLD_BY_ALL = 4, 1.0 / 3.0
 ALIKE = 0.75  # of the drift, by which half of all speeds differ from it at most; noise leaves more
 LEAST_STANCE, LEAST_STANDING = 0.3, 12  # s, and frames: half of fewer slide alike by chance
 LEAST_SHARE = 0.1  # of a clip, in which something stands, likewise: a dance's few moments turn feet
@@ -188,11 +191,15 @@ class _Slides:
 
     def tell(self, drift: FloatArray) -> bool:
         """Whether they slide so far in all that honest feet do not, and without the drift (2,),
-        m/s, in each stance no further than these: one that is short tells too little alone."""
-        slid = float(np.linalg.norm(drift)) * self.seconds
+        m/s, in each stance no further than these, or together far less than with it: one that is
+        short tells too little alone."""
+        speed = float(np.linalg.norm(drift))
+        slid = speed * self.seconds
         left = np.linalg.norm(self.own - drift, axis=1) * self.seconds
-        agree = left < np.maximum(HONEST, TOLD_WITHIN * slid)
-        return bool(slid.sum() > LEAST_SLID and agree.all())
+        agree = (left < np.maximum(HONEST, TOLD_WITHIN * slid)).all()
+        if len(slid) >= SEVERAL and speed > DRIFT:
+            agree |= np.sqrt(np.mean(left**2)) < TOLD_BY_ALL * np.sqrt(np.mean(slid**2))
+        return bool(slid.sum() > LEAST_SLID and agree)
 
 
 def _drift(slides: _Slides, slowest: float) -> tuple[float, float] | None:

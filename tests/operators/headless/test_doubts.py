@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from hangtime.operators.headless.doubts import doubts_about
 from hangtime.operators.words.doubt_text import MOST_DAMAGES, damage_doubts
-from hangtime.solver.data.problem import ContactEdit, MotionProblem, Pin
+from hangtime.solver.data.problem import AddedContact, ContactEdit, MotionProblem, Pin
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.reports.recording import Origin
+from hangtime.solver.data.scaling import scaled_recording
 from hangtime.solver.doctor.finding import Finding, FindingKind
 from hangtime.solver.worker.pipeline import measure
 from hangtime.tests.helpers.clips import JUMP, load_recording
@@ -52,6 +53,18 @@ def test_a_contact_that_is_to_last_while_its_foot_is_elsewhere_is_told() -> None
     flown = 100.0 * float(np.linalg.norm(toe[int(late - recording.frames[0])] - toe[0]))
     (said,) = re.findall(rf"([\d.]+) cm from where it touches \(frame {late:.0f}\)", lines[0])
     assert float(said) == pytest.approx(flown, rel=0.1)
+
+
+def test_a_contact_that_is_added_while_its_point_goes_on_is_told() -> None:
+    flight = AddedContact("Left toe", 120.0, 200.0)
+    lines = told(load_recording(JUMP), replace(USUAL, added=(flight,)))
+    assert [line for line in lines if "Left toe" in line and "from where it touches" in line]
+
+
+def test_of_a_contact_whose_edit_changes_nothing_nothing_is_told_in_centimetres() -> None:
+    recording = scaled_recording(load_recording(JUMP), 100.0)
+    edited = replace(USUAL, height=1.75, contacts=(ContactEdit("Left toe 1", end_frame=115.0),))
+    assert not [line for line in told(recording, edited) if "from where it touches" in line]
 
 
 def test_at_a_stated_stature_lengths_are_told_as_recorded() -> None:

@@ -140,10 +140,10 @@ def test_a_fit_that_is_far_off_in_one_place_is_told_so_first() -> None:
     far = "Solved, but the fit is far from the recording in one place"
     assert not lines()[0].startswith(far)
     assert lines(worst_joint_cm=18.7)[0].startswith(far)
-    turned = lines(most_turned="left shank", most_turned_deg=73.0, most_turned_frame=47.0)
+    turned = lines(turned_limb="left shank", turned_limb_deg=73.0, turned_limb_frame=47.0)
     assert turned[0].startswith(far)
     assert "  The fit turns the left shank away from the recording by 73° (frame 47)" in turned
-    assert lines(most_turned="left toe", most_turned_deg=73.0) == lines()
+    assert lines(most_turned="left toe", most_turned_deg=73.0, turned_limb_deg=40.0) == lines()
 
 
 def test_a_slide_under_load_that_shows_is_told_though_its_line_holds() -> None:

@@ -92,6 +92,14 @@ def test_a_clock_is_told_of_a_recording_that_rises() -> None:
     assert found.repairs.rise == pytest.approx(0.1, abs=0.015)  # at the clock that is right
 
 
+def test_falls_at_a_wrong_clock_that_a_rise_hides_are_no_leaps() -> None:
+    """Whose remedy would cut what is after them."""
+    found = diagnose(slowed(0.6).of(rising(0.07).of(jump()).recording).recording)
+    assert {"time scale", "rising"} <= {*kinds(found)}
+    assert "leap" not in kinds(found)
+    assert found.repairs.trim_end == 0
+
+
 def test_a_rise_alone_is_no_wrong_clock() -> None:
     """As its feet leave the lowest floor, the wrong moments seem to be falls."""
     damaged = rising(0.07).of(load_recording("hops_in_place.bvh").window(151, 451)).recording

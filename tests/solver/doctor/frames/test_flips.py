@@ -49,3 +49,15 @@ def test_a_flip_up_to_an_end_bends_the_limb_as_it_bends_elsewhere(
     """Its one edge does not tell about whose axis it was."""
     damaged = flipped(name, frames, channel)
     assert 100.0 * apart(mended(damaged), jump()) < 0.5
+
+
+@pytest.mark.parametrize("channel", [0, 2])
+def test_flips_that_a_single_frame_parts_are_turned_back(channel: int) -> None:
+    """At their edges the frame before last is flipped as well, and tells no way to go on."""
+    local, name = LocalPoses.of(jump()), "LeftUpLeg"
+    bone, frames = jump().index(name), [60, 61, 62, 64, 66, 67]
+    whole = LocalPoses.of(flipped(name, slice(None), channel))
+    local.rotations[frames, bone] = whole.rotations[frames, bone]
+    damaged = local.posed(jump())
+    assert apart(damaged, jump()) > 0.03
+    assert 100.0 * apart(mended(damaged), jump()) < 1.0

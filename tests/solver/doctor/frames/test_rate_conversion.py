@@ -6,10 +6,11 @@ from hangtime.devtools.doctor.damages.clock import converted, held
 from hangtime.devtools.doctor.damages.damage import at_rate
 from hangtime.devtools.doctor.measure import apart
 from hangtime.operators.words.doctor_text import finding_sentence
+from hangtime.solver.data.problem import Mend
 from hangtime.solver.doctor.examination.repair import repaired
 from hangtime.solver.doctor.finding import FindingKind
 from hangtime.solver.doctor.frames.rate_conversion import find_conversion
-from hangtime.solver.doctor.repairs import Repairs
+from hangtime.solver.doctor.repairs import MissingFrames, Repairs
 from hangtime.tests.helpers.doctored import jump, of_poses
 
 
@@ -42,3 +43,11 @@ def test_frames_that_are_held_at_no_beat_are_no_conversion() -> None:
 
 def test_a_clean_clip_of_few_frames_a_second_is_none() -> None:
     assert find_conversion(at_rate(jump(), 24.0)) is None
+
+
+def test_poses_are_evened_before_frames_are_put_in() -> None:
+    made = converted(24.0, 30.0).of(jump()).recording
+    evened = repaired(made, Repairs(mend=(Mend.HELD_FRAMES,)))
+    both = repaired(made, Repairs(mend=(Mend.HELD_FRAMES,), missing=(MissingFrames(100, 3),)))
+    after = both.frames > 103.0
+    assert np.abs(both.heads[after] - evened.heads[-after.sum() :]).max() < 1e-3
