@@ -65,9 +65,15 @@ def test_the_scale_that_is_told_mends_it(run: bpy.types.Object) -> None:
     with pytest.raises(RuntimeError) as told:
         bpy.ops.hangtime.analyze()
     factor = float(str(told.value).split("again at ")[1].split()[0])
-    run.scale *= factor
+    shown = run.scale.copy()
+    run.scale = shown / TOO_LARGE
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
-    assert run.hangtime.measured_height == pytest.approx(1.75, rel=0.05)
+    true_height = run.hangtime.measured_height
+    run.scale = shown * factor
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    # What makes the falls right, to a fifth in a run's short ones; a person's in any case.
+    assert run.hangtime.measured_height == pytest.approx(true_height, rel=0.2)
+    assert 1.4 < run.hangtime.measured_height < 2.0
 
 
 def test_frames_beside_the_recording_are_told_as_such(run: bpy.types.Object) -> None:

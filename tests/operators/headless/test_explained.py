@@ -13,10 +13,13 @@ pytestmark = pytest.mark.usefixtures("_handlers_stay")
 
 @pytest.fixture
 def _handlers_stay() -> object:
-    signals = (signal.SIGINT, signal.SIGTERM)
+    """As in a terminal: who starts the tests in the background of a shell ignores interrupts."""
+    signals, inherited = (signal.SIGINT, signal.SIGTERM), signal.getsignal(signal.SIGINT)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     before = [signal.getsignal(number) for number in signals]
     yield
     assert [signal.getsignal(number) for number in signals] == before
+    signal.signal(signal.SIGINT, inherited)
 
 
 def blender_operator(number: int | None) -> None:
