@@ -38,15 +38,17 @@ def repaired(
 
     Raises MissingPart, NotBetweenFrames, NothingLeft.
     """
-    beaten = _off_the_beat(turned(recording, repairs), repairs)
-    whole = filled(beaten, repairs.missing)
+    upright = _evened_first(turned(recording, repairs), repairs)
+    whole = filled(upright, repairs.missing)
     still = placed(mended(trimmed(whole, repairs), repairs, chosen), repairs)
     return grounded(still, repairs.mend, chosen)
 
 
-def _off_the_beat(recording: Recording, repairs: Repairs) -> Recording:
-    """Evened before frames are put in, which would break the beat."""
-    found = conversion(recording) if Mend.HELD_FRAMES in repairs.mend and repairs.missing else None
+def _evened_first(recording: Recording, repairs: Repairs) -> Recording:
+    """With a conversion of its rate evened, where frames are put in that would break its beat."""
+    if Mend.HELD_FRAMES not in repairs.mend or not repairs.missing:
+        return recording
+    found = conversion(recording)
     return recording if found is None else evened(recording, found)
 
 

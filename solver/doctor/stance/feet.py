@@ -13,8 +13,8 @@ from ...data.contacts import ContactPoint
 from ...numerics.runs import runs
 from ..falls import Spans
 from ..finding import Finding, FindingKind
-from .flat_feet import STANDING_SPEED_UP
-from .footing import DRIFT, FLOOR_OFF, HONEST, LOW
+from .flat_feet import LOW, STANDING_SPEED_UP
+from .footing import DRIFT, FLOOR_OFF, HONEST
 
 SHORTEST = 0.1  # s; what is over sooner is a step's own unrest
 LEAST_SLID = 0.02  # m from its place; soles that roll do less

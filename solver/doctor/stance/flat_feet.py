@@ -18,6 +18,7 @@ FLAT = 0.06  # m/s, by which both ends of a foot that stands flat differ
 FLAT_SPEED = 0.3  # m/s, along the floor; a foot that is lifted or set down goes faster
 FLAT_SPEED_UP = 0.45  # m/s, up or down; who falls is as slow for 0.09 s, which is no stance
 STANDING_SPEED_UP = 0.15  # m/s, up or down, of a foot that stands, flat or not
+LOW = 0.03  # m above the floor: a foot that stands
 LEAST_STANCE = 0.1  # s
 ROUNDS = 8  # of narrowing the speeds to the half that agree best
 

@@ -21,13 +21,12 @@ from ..falls import Spans
 from ..figure import Figure
 from ..finding import Finding, FindingKind
 from ..repairs import Repairs
-from .flat_feet import FLAT_SPEED, STANDING_SPEED_UP, FlatSamples, agreed
+from .flat_feet import FLAT_SPEED, LOW, STANDING_SPEED_UP, FlatSamples, agreed
 from .to_and_fro import go_against
 from .trembling_feet import drift_of_stances
 
 FLOOR_OFF = 0.03  # m, from the world's 0
 TOP_OFF = 0.05  # m, likewise, of a box: how thick soles are is told by a floor at 0 alone
-LOW = 0.03  # m above the floor: a foot that stands
 NEAR = 0.2  # m above the floor, where a foot still stands that sinks to it
 UNEVEN = 0.02  # m, standard deviation of where feet stand; of honest ones on one floor up to 0.01
 STRAIGHT = 0.3  # of that, which is left without the rise; two stances on a stair's steps leave 0.5

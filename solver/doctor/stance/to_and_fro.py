@@ -9,10 +9,9 @@ import numpy as np
 
 from ...analysis.performance import Performance, contact_points
 from ...arrays import FloatArray
-from .flat_feet import FLAT_SPEED, STANDING_SPEED_UP
+from .flat_feet import FLAT_SPEED, LOW, STANDING_SPEED_UP
 from .trembling_feet import TREMOR, WINDOW, slopes
 
-LOW = 0.03  # m above the floor: a foot that stands
 AGAINST = 0.08  # m/s, against the drift: noise and feet that roll seldom leave as much
 # Of the time in which feet stand: what sways leaves 0.14 to 0.45, of short stances in noise 0.1,
 # and drifts of 0.1 m/s and more, in noise as well, leave up to 0.125.
