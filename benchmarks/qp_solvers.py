@@ -1,4 +1,4 @@
-"""A step's small QP (optimisation/active_set.py) beside the solvers that CasADi ships.
+"""A step's small QP (optimisation/bounds/active_set.py) beside the solvers that CasADi ships.
 
 python devtools/package.py benchmarks.qp_solvers
 """
@@ -11,7 +11,7 @@ import casadi as ca
 import numpy as np
 
 from ..solver.arrays import FloatArray
-from ..solver.optimisation.active_set import multipliers_by_active_set
+from ..solver.optimisation.bounds.active_set import multipliers_by_active_set
 
 SIZES = (30, 120, 300)
 REPEATS = 5

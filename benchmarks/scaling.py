@@ -19,7 +19,8 @@ from ..solver.body.joint_axes import JointAxes
 from ..solver.fitting.fit import ADAPT_COST_WEIGHTS, Fit, fit
 from ..solver.numerics.rotations import mean_rotation
 from ..solver.objectives.motion_metric import motion_metric
-from ..solver.optimisation.sqp import FeasibleSet, Outcome, restore
+from ..solver.optimisation.restoration import restore
+from ..solver.optimisation.sqp import FeasibleSet, Outcome
 from ..solver.stages.implicit import adapt
 from ..solver.transcription.motion import Motion
 from ..solver.worker.pipeline import Subject, fit_possible, measure, solve

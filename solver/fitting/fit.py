@@ -23,9 +23,10 @@ from ..objectives.least_squares import torque_metric
 from ..objectives.motion_metric import motion_metric
 from ..objectives.tracking_cost import CostWeights, TrackingCost
 from ..optimisation.guards import with_guards
-from ..optimisation.kkt_step import LinearisedProblem
+from ..optimisation.kkt_step import LinearisedProblem, Remains
 from ..optimisation.projection import project
-from ..optimisation.sqp import FeasibleSet, Outcome, Progress, restore
+from ..optimisation.restoration import restore
+from ..optimisation.sqp import FeasibleSet, Outcome, Progress
 from ..solid.penetrations import Penetrations
 from ..solid.shape_changes import AS_IS, ShapeChanges
 from ..solid.solid_world import floor_heights, own_overlaps
@@ -214,7 +215,7 @@ def fit(
     human = HumanGuard(recorded_ranges(recorded), recorded)
     price = range_price(recorded)
     metric_of = partial(motion_metric, weights=FIT_COST_WEIGHTS, price=price)
-    outcomes = _valid_nearby(recorded, performance, schedule, metric_of, progress)
+    outcomes = _valid_nearby(recorded, performance, schedule, price, progress)
     last = outcomes[-1]
     if last.solved:
         coarse = Motion(last.transcription, last.x, last.places)
@@ -234,7 +235,7 @@ def _valid_nearby(
     recorded: Motion,
     performance: Performance,
     schedule: ContactSchedule,
-    metric_of: MetricOf,
+    price: JointPrice,
     progress: Progress | None,
 ) -> list[Outcome]:
     """A valid motion near the recording, on its knots: its distance counts until the rows nearly
@@ -244,13 +245,17 @@ def _valid_nearby(
     if transcription.seam is not None:
         x = transcription.seam.closed(x, cost.expand(x)[1])
     feasible = FeasibleSet(transcription, recorded.places)
-    first, _ = project(
+    remains: Remains | None  # of the step before, for the first of a restoration with its rows
+    first, hessian, remains = project(
         feasible, cost, x, stage="fit", max_steps=MAX_PROJECTION_STEPS, progress=progress
     )
     outcomes = [first]
-    metric = metric_of(feasible.motion(first.x))
+    metric = motion_metric(feasible.motion(first.x), FIT_COST_WEIGHTS, price, into=hessian)
     for _ in range(1 + MAX_PLACE_UPDATES):
-        last = restore(feasible, metric, outcomes[-1].x, stage="fit", progress=progress)
+        last = restore(
+            feasible, metric, outcomes[-1].x, stage="fit", progress=progress, last=remains
+        )
+        remains = None
         outcomes.append(last)
         if last.solved:
             break
@@ -303,7 +308,7 @@ def _improved(
     for guards in ((human,), ()):
         wider = partial(with_guards, guards)
         feasible = wider(plain, finer.x)
-        nearer, metric = project(
+        nearer, metric, remains = project(
             feasible,
             cost_of(),
             finer.x,
@@ -319,6 +324,7 @@ def _improved(
             max_turn=MAX_TURN,
             progress=progress,
             wider=wider,
+            last=remains,
         )
         near = _off(feasible.motion(restored.x), performance) < limit
         if restored.solved and (near or not restored.transcription.guards):

@@ -9,7 +9,8 @@ from ..arrays import FloatArray, IntArray
 from ..data.status import Status
 from ..numerics.block_banded import BlockBanded
 from ..numerics.splines import SplineBasis
-from ..optimisation.sqp import FeasibleSet, Outcome, Progress, restore
+from ..optimisation.restoration import restore
+from ..optimisation.sqp import FeasibleSet, Outcome, Progress
 from ..transcription.motion import DenseTolerance, Motion, spans_to_refine, split_spans
 
 MAX_REFINEMENTS = 3

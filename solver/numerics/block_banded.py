@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from .openblas import openblas, product
 
 BANDWIDTH = 3
@@ -50,6 +50,18 @@ class BlockBanded:
         twin.lower[: self.band + 1] = self.lower
         twin.lower[self.band + 1 :] = 0.0
         twin._columns[blocks:] = 0.0
+        return twin
+
+    def part(self, blocks: slice, free: BoolArray) -> "BlockBanded":
+        """The square of some blocks, in which those that are not free (by flags) couple with none
+        and have ones on their diagonal."""
+        _, size = self.lower.shape[1:3]
+        twin = BlockBanded(blocks.stop - blocks.start, size, self.band)
+        twin.lower[:] = self.lower[:, blocks]
+        for j in range(self.band + 1):
+            beyond = np.append(~free, np.ones(j, dtype=bool))[j:]
+            twin.lower[j, ~free | beyond] = 0.0
+        twin.add_diagonal(np.repeat(~free[:, None], size, axis=1).astype(float))
         return twin
 
     def cleared(self) -> "BlockBanded":

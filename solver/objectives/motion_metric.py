@@ -16,13 +16,14 @@ def motion_metric(
     weights: CostWeights,
     price: JointPrice | None = None,
     resting: BoolArray | None = None,
+    into: BlockBanded | None = None,
 ) -> BlockBanded:
     """Metric W at a motion: Gauss-Newton Hessian of the tracking cost to itself.
 
-    price, resting: as of the cost.
+    price, resting: as of the cost. into: an earlier Hessian or metric, to be overwritten.
     """
     cost = TrackingCost(motion.transcription, motion_target(motion), weights, price, resting)
-    return cost.expand(motion.x)[1]
+    return cost.expand(motion.x, into)[1]
 
 
 def motion_target(motion: Motion) -> TrackingTarget:

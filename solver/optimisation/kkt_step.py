@@ -4,12 +4,12 @@
 
 The equalities are settled by an augmented Lagrangian (Nocedal & Wright, 17.3), which also settles
 redundant rows (two feet planted, pins on one rigid foot) without choosing among them; the bounds by
-a small quadratic program (bounded_qp.py), which limp joints do not crowd (limp_torques.py).
+a small quadratic program (bounds/bounded_qp.py), which limp joints do not crowd (limp_torques.py).
 """
 
 from contextlib import suppress
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from ..numerics.tied_factor import Factor, TiedFactor
 from ..transcription.rows import Rows, by_kind
 from ..transcription.transcription import Transcription
 from .acceleration import Anderson
-from .bounded_qp import BoundedStep
+from .bounds.bounded_qp import BoundedStep
 from .limp_torques import LimpTorques
 from .span_rows import SpanRows
 
@@ -53,12 +53,13 @@ class KktStep:
 class Remains:
     """What a linearised problem leaves to the next one with the same rows.
 
-    sides: (R,) working set of its last step (bounded_qp.py). matrix: storage;
+    sides: (R,) working set of its last step (bounds/bounded_qp.py). matrix, equalities: storage;
     once the next one has been made in it, the problem itself is no more.
     """
 
     sides: FloatArray
     matrix: BlockBanded
+    equalities: SpanRows
 
 
 class LinearisedProblem:
@@ -80,20 +81,28 @@ class LinearisedProblem:
     ) -> None:
         self._basis = basis
         self._metric = metric if basis is None else metric.congruent(basis)
-        self._blocks = transcription.basis.n_coefficients
+        self._window = transcription.blocks
         self._equal = np.flatnonzero(rows.equal)
         scale = by_kind(rows.kind[self._equal], ROW_SCALES)
-        first = transcription.basis.first_coefficient
-        self._equalities = SpanRows.of(rows, self._equal, scale, first, basis)
+        self._spans = transcription.spans
+        self._first = transcription.basis.first_coefficient[self._spans] - self._window.start
+        rows, first = self._in_window(rows), self._first
+        into = None if last is None else last.equalities
+        self._equalities = SpanRows.of(rows, self._equal, scale, first, basis, into)
         weight = transcription.character.mass * STANDARD_GRAVITY
         self._limp = LimpTorques.of(rows, weight, first, basis)
         self._matrix = self._system(None if last is None else last.matrix)
         self._factor: Factor = self._factored()
         if transcription.seam is not None:
-            ties = transcription.seam.columns(self._blocks)
+            ties = transcription.seam.columns(self._window.stop)
             ties = ties if basis is None else np.einsum("knr,nb->kbr", ties, basis)
             self._factor = TiedFactor.of(self._factor, ties)
         self._bound(transcription, rows, None if last is None else last.sides)
+
+    def _in_window(self, rows: Rows) -> Rows:
+        """The same rows with their spans counted from the window's first."""
+        start = self._spans.start
+        return replace(rows, span=rows.span - start) if start else rows
 
     def _system(self, into: BlockBanded | None = None) -> BlockBanded:
         """A, see above."""
@@ -119,7 +128,7 @@ class LinearisedProblem:
         twin = copy(self)
         kept = self.rows.unguarded
         sides = np.concatenate([self._sides[: len(kept.value)], np.zeros(len(guards.value))])
-        twin._bound(transcription, Rows.join([kept, guards]), sides)
+        twin._bound(transcription, Rows.join([kept, self._in_window(guards)]), sides)
         return twin
 
     def renewed(self) -> "LinearisedProblem":
@@ -134,8 +143,8 @@ class LinearisedProblem:
         self._transcription, self.rows = transcription, rows
         self._scale, self._tolerance = by_kind(rows.kind, ROW_SCALES), rows.tolerance
         self._free = np.flatnonzero(~rows.equal)
-        first = transcription.basis.first_coefficient
-        bounds = SpanRows.of(rows, self._free, self._scale[self._free], first, self._basis)
+        scale = self._scale[self._free]
+        bounds = SpanRows.of(rows, self._free, scale, self._first, self._basis)
         self._bounds = bounds
         was = np.zeros(len(self._free)) if sides is None else sides[self._free]
         self._bounded = BoundedStep(
@@ -151,7 +160,7 @@ class LinearisedProblem:
     @property
     def remains(self) -> Remains:
         """For the next problem with the same rows."""
-        return Remains(self._sides, self._matrix)
+        return Remains(self._sides, self._matrix, self._equalities)
 
     @property
     def _sides(self) -> FloatArray:
@@ -163,7 +172,7 @@ class LinearisedProblem:
     def times(self, d: FloatArray) -> FloatArray:
         """(R,) first-order change of the rows' values by a change d (K, n_block) of the unknowns,
         of which only what the basis allows counts."""
-        d = d if self._basis is None else d @ self._basis
+        d = d[self._window] if self._basis is None else d[self._window] @ self._basis
         change = np.empty(len(self.rows.value))
         change[self._equal] = self._equalities.times(d)[self._equalities.where]
         change[self._free] = self._bound_values(d)
@@ -225,9 +234,11 @@ class LinearisedProblem:
         y = np.zeros_like(r)
         if multipliers is not None:
             y[windows.where] = multipliers[self._equal]
-        if gradient is not None and self._basis is not None:
-            gradient = gradient @ self._basis
-        d = np.zeros((self._blocks, windows.size))
+        blocks = self._window.stop - self._window.start
+        if gradient is not None:
+            gradient = gradient[self._window]
+            gradient = gradient if self._basis is None else gradient @ self._basis
+        d = np.zeros((blocks, windows.size))
         residual = r
         enough = SWEEP_REST * self._scaled(self._tolerance, self._equal)
         enough = np.maximum(enough, SWEEP_REDUCTION * float(np.abs(residual).max()))
@@ -235,7 +246,7 @@ class LinearisedProblem:
         at, accelerated = self._scaled(value, self._free), Anderson()
         z = at
         for sweep in range(sweeps):
-            lagrangian_gradient = windows.transposed(y + PENALTY * residual, self._blocks)
+            lagrangian_gradient = windows.transposed(y + PENALTY * residual, blocks)
             if sweep:
                 lagrangian_gradient += self._metric.times(d)
             lagrangian_gradient += self._limp.gradient(off, d)
@@ -253,7 +264,9 @@ class LinearisedProblem:
         found[self._equal], found[self._free] = y[windows.where], self._bounded.multipliers
         change[self._equal], change[self._free] = (residual - r)[windows.where], z - at
         d = d if self._basis is None else d @ self._basis.T
-        return KktStep(d, change * self._scale, found)
+        whole = np.zeros((self._transcription.basis.n_coefficients, d.shape[1]))
+        whole[self._window] = d
+        return KktStep(whole, change * self._scale, found)
 
     def _bound_values(self, d: FloatArray) -> FloatArray:
         """(R_bounds,) product B_x d."""

@@ -22,11 +22,12 @@ def project(
     stage: str,
     max_steps: int,
     progress: Progress | None = None,
-) -> tuple[Outcome, BlockBanded]:
+) -> tuple[Outcome, BlockBanded, Remains]:
     """Projection: SQP steps that minimise an objective in the feasible set (thesis 4.2).
 
     x: (K, n_block). max_steps: at least 1. Ends when a step changes the objective little and the
-    rows nearly hold; `restore` finishes what is left. The Hessian of its last step, too.
+    rows nearly hold; `restore` finishes what is left. The Hessian of its last step, too, and what
+    that leaves to the next.
     """
     steps: list[Step] = []
     status = Status.TOO_MANY_STEPS
@@ -58,7 +59,8 @@ def project(
             status = Status.SOLVED
             break
     assert hessian is not None
-    return feasible.outcome(x, status, steps, violation), hessian
+    assert last is not None
+    return feasible.outcome(x, status, steps, violation), hessian, last
 
 
 @dataclass(frozen=True)

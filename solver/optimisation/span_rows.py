@@ -24,9 +24,15 @@ class SpanRows:
 
     @staticmethod
     def of(
-        rows: Rows, chosen: IntArray, scale: FloatArray, first: IntArray, basis: FloatArray | None
+        rows: Rows,
+        chosen: IntArray,
+        scale: FloatArray,
+        first: IntArray,
+        basis: FloatArray | None,
+        into: "SpanRows | None" = None,
     ) -> "SpanRows":
-        """Sorts the chosen rows (m,), in units of scale (m,), by span."""
+        """Sorts the chosen rows (m,), in units of scale (m,), by span. into: an earlier one that
+        is no more; of as many rows a span, its memory is taken, for new memory costs more."""
         span = rows.span[chosen]
         order = np.argsort(span, kind="stable")
         counts = np.bincount(span, minlength=len(first))
@@ -34,7 +40,9 @@ class SpanRows:
         place = np.empty(len(order), dtype=int)
         place[order] = np.arange(len(order)) - before[span[order]]
         n = rows.jacobian.shape[2] if basis is None else basis.shape[1]
-        J = np.zeros((len(first), counts.max(initial=0), ORDER * n))
+        shape = (len(first), counts.max(initial=0), ORDER * n)
+        alike = into is not None and into.J.shape == shape and (into.counts == counts).all()
+        J = into.J if into is not None and alike else np.zeros(shape)
         for start in range(0, len(chosen), AT_ONCE):
             some = slice(start, start + AT_ONCE)
             jacobian = rows.jacobian[chosen[some]]

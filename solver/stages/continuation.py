@@ -12,7 +12,8 @@ from ..data.row_kinds import RowKind
 from ..fitting.fit import MAX_TURN
 from ..inverse_kinematics.arm_ik import reach_grips
 from ..optimisation.guards import Guard, with_guards
-from ..optimisation.sqp import FeasibleSet, Outcome, Progress, restore
+from ..optimisation.restoration import restore
+from ..optimisation.sqp import FeasibleSet, Outcome, Progress
 from ..transcription.motion import Motion
 from .setup import Setup
 from .warm_start import continuation_steps, partial_places, stance_moves, warm_start

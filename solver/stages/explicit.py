@@ -24,7 +24,8 @@ from ..objectives.least_squares import (
 from ..objectives.motion_metric import motion_target
 from ..objectives.tracking_cost import TrackingCost
 from ..optimisation.gauss_newton import minimise
-from ..optimisation.sqp import Outcome, Progress, restore
+from ..optimisation.restoration import restore
+from ..optimisation.sqp import Outcome, Progress
 from ..transcription.motion import Motion
 from ..transcription.sampling import MotionFunction
 from ..transcription.transcription import Transcription

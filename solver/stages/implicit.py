@@ -19,7 +19,8 @@ from ..fitting.fit import ADAPT_TOLERANCE, Fit, SolvedMotion
 from ..fitting.knot_refinement import refine
 from ..human.limb_speed import JointSpeed, fastest_joint, too_fast
 from ..optimisation.guards import Guard, guarded, in_the_way
-from ..optimisation.sqp import MAX_STEPS, Outcome, Progress, Stopped, restore
+from ..optimisation.restoration import MAX_STEPS, restore
+from ..optimisation.sqp import Outcome, Progress, Stopped
 from ..transcription.constraint import DenseViolation, dense_violation, exchange
 from ..transcription.contact_pins import tied_places
 from ..transcription.motion import Motion

@@ -29,7 +29,8 @@ from ..data.traces import Traces
 from ..fitting.fit import Fit
 from ..optimisation.guards import Guard, guarded
 from ..optimisation.kkt_step import LinearisedProblem
-from ..optimisation.sqp import FeasibleSet, restore
+from ..optimisation.restoration import restore
+from ..optimisation.sqp import FeasibleSet
 from ..transcription.guard_rows import GuardRows
 from ..transcription.motion import Motion
 from .implicit import Adaptation

@@ -10,11 +10,11 @@ from typing import Protocol
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..body.character import Character
 from ..data.row_kinds import RowKind
 from ..numerics.splines import SplineBasis
-from .rows import Layout, Rows, violation
+from .rows import Layout, Rows, inside, violation
 from .sampling import Instants, MotionFunction, State
 
 MAX_DENSE_SPACING = 0.004  # s, between the instants that tell whether a bound holds
@@ -42,6 +42,9 @@ class Collocated(Protocol):
 
     def limits(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Lower and upper (U, m) bounds at those instants, s."""
+
+    def some(self, which: BoolArray, /) -> "Collocated":
+        """The same for some of its instants, by flags (U,)."""
 
 
 @dataclass(frozen=True)
@@ -86,6 +89,10 @@ class Constraint:
     def limits(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Lower and upper (U, m) bounds at instants (U,) s."""
         return self.bounds.at(times)
+
+    def some(self, _which: BoolArray) -> "Constraint":
+        """Itself: its function is the same at all of its instants."""
+        return self
 
     def instants(self, basis: SplineBasis) -> Instants:
         """Collocation instants on a basis: both ends, and evenly inside every span.
@@ -165,6 +172,15 @@ class DiscretisedConstraint:
         found = self.value(x).reshape(self.lower.shape)
         twin.lower = self.lower + (1.0 - share) * np.minimum(found - self.lower, 0.0)
         twin.upper = self.upper + (1.0 - share) * np.maximum(found - self.upper, 0.0)
+        return twin
+
+    def within(self, spans: slice) -> "DiscretisedConstraint":
+        """Its instants in some of the spans."""
+        twin, kept = copy(self), inside(self.instants.spans, spans)
+        twin.constraint, twin.instants = self.constraint.some(kept), self.instants.some(kept)
+        twin.lower, twin.upper = self.lower[kept], self.upper[kept]
+        if isinstance(self._owner, np.ndarray):
+            twin._owner = self._owner[kept]
         return twin
 
     def value(self, x: FloatArray) -> FloatArray:

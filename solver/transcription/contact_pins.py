@@ -8,6 +8,7 @@ surface: then only its height is held.
 """
 
 from collections.abc import Callable, Sequence
+from copy import copy
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -20,7 +21,7 @@ from ..numerics.interpolation import interpolate
 from ..numerics.rigid_motion import Poses
 from ..numerics.splines import ORDER, SplineBasis
 from .ride import Ride
-from .rows import Layout, Rows
+from .rows import Layout, Rows, inside
 
 DEFAULT_FRICTION = 1.0  # of a rubber sole on a hall's floor
 SLACK_RATE = 50.0  # 1/s, of a speed that goes with a slack of places
@@ -183,6 +184,20 @@ class _PinPairs:
     turned: bool
     slack: FloatArray | float
 
+    def within(self, kept: BoolArray) -> "_PinPairs":
+        """Those at some of the breaks, by flags of all of these; breaks are counted among them."""
+        mine, slack = kept[self.at], self.slack
+        return _PinPairs(
+            self.contact[mine],
+            (np.cumsum(kept) - 1)[self.at[mine]],
+            self.point[mine],
+            self.axes[mine],
+            Poses(self.holds.turn[mine], self.holds.shift[mine]),
+            self.kept[np.repeat(mine, 3)],
+            self.turned,
+            slack[mine] if isinstance(slack, np.ndarray) else slack,
+        )
+
     def held(self, places: FloatArray) -> FloatArray:
         """(M, 3) where places (n_contacts, 3) m are held, m, or how fast that goes, m/s."""
         return self.holds.of(places[self.contact])
@@ -228,6 +243,14 @@ class Pins:
         slack = np.array([c.contact.slack for c in contacts])[contact] if len(contact) else 0.0
         slack = slack * (SLACK_RATE if velocity else 1.0)
         return _PinPairs(contact, at, point, axes, holds, kept.ravel(), turned, slack)
+
+    def within(self, spans: slice) -> "Pins":
+        """Those in some of the spans."""
+        twin, kept = copy(self), inside(self.spans, spans)
+        twin.times, twin.spans = self.times[kept], self.spans[kept]
+        twin._basis = [each[kept] for each in self._basis]
+        twin._position, twin._velocity = self._position.within(kept), self._velocity.within(kept)
+        return twin
 
     def angles(self, window: FloatArray) -> FloatArray:
         """(U, n_angles) joint angles at the pins' breaks, rad; window (U, 4, n_block)."""

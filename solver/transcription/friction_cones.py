@@ -6,6 +6,7 @@ they hold at every instant. The round cone is |f_t| <= mu f_n; the pyramid has t
 """
 
 from collections.abc import Sequence
+from copy import copy
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from ..numerics.rigid_motion import Poses
 from ..numerics.rotations import perpendicular, unit
 from ..numerics.splines import ORDER, SplineBasis
 from .contact_pins import PointContact, touching_spans
-from .rows import FORCE_BLOCKS, Layout, Rows
+from .rows import FORCE_BLOCKS, Layout, Rows, inside
 
 MIN_TANGENTIAL_FORCE = 1e-9  # BW; below it a tangential force has no direction
 
@@ -53,6 +54,20 @@ class FrictionCones:
                 turns = contact.ride.poses(self._times[mine]).turn
             self._frames[mine] = _frame(contact.normal) @ np.swapaxes(turns, 1, 2)
         self._pyramid = np.array([contacts[i].pyramid for i in self._owner], dtype=bool)
+
+    def within(self, spans: slice) -> "FrictionCones":
+        """Those in some of the spans."""
+        twin, kept = copy(self), inside(self._spans, spans)
+        twin._owner, twin._blocks, twin._spans = (
+            each[kept] for each in (self._owner, self._blocks, self._spans)
+        )
+        twin._local, twin._times, twin._columns = (
+            each[kept] for each in (self._local, self._times, self._columns)
+        )
+        twin._mu, twin._frames, twin._pyramid = (
+            each[kept] for each in (self._mu, self._frames, self._pyramid)
+        )
+        return twin
 
     def forces(self, x: FloatArray) -> FloatArray:
         """(U, 3) forces in body weights along two tangents and the normal; x (K, n_block)."""

@@ -162,6 +162,11 @@ class Rows:
         return violation(self.value if value is None else value, self.lower, self.upper)
 
 
+def inside(spans: IntArray, part: slice) -> BoolArray:
+    """Flags of the spans (R,) that are in a part of all."""
+    return np.asarray((spans >= part.start) & (spans < part.stop))
+
+
 def violation(value: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
     """Signed bound violation: positive over the upper, negative under the lower, else zero."""
     return np.asarray(np.maximum(value - upper, 0.0) + np.minimum(value - lower, 0.0))

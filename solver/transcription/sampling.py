@@ -1,5 +1,6 @@
 """Functions of the motion sampled at instants, and the chain rule to the unknowns."""
 
+from copy import copy
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
@@ -7,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..body.character import Character
 from ..body.kinematics import Pose, forward_kinematics
 from ..numerics.splines import ORDER, SplineBasis
@@ -46,6 +47,15 @@ class Instants:
         self.values = [basis.evaluate(times, k, self.spans) for k in range(3)]
         self.force_weights = basis.force_weights(times, self.spans)
         self.blocks = basis.first_coefficient[self.spans][:, None] + np.arange(ORDER)
+
+    def some(self, which: BoolArray) -> "Instants":
+        """Some of them, by flags (U,)."""
+        twin = copy(self)
+        twin.times = self.times[which]
+        twin.spans, twin.blocks = self.spans[which], self.blocks[which]
+        twin.values = [each[which] for each in self.values]
+        twin.force_weights = self.force_weights[which]
+        return twin
 
     def assemble(self, jacobians: list[ChannelJacobian], layout: Layout) -> FloatArray:
         """Chain rule: Jacobian (U, m, 4, n_block) by the unknowns of each instant's four blocks."""

@@ -39,7 +39,7 @@ from .contact_pins import Pins, PointContact, cut_by_seam, touching_spans
 from .friction_cones import FrictionCones
 from .guard_rows import GuardRows
 from .ride import Ride
-from .rows import FORCE_BLOCKS, Layout, Rows
+from .rows import FORCE_BLOCKS, Layout, Rows, inside
 from .sampling import ChannelJacobian, Instants
 
 GAUSS_NODES = 3  # dynamics nodes a span
@@ -68,11 +68,13 @@ class Transcription:
     periodic: bool = False
     course: tuple[float, float] | None = None
     support: SupportForce | None = None
+    spans: slice = field(init=False)  # that it has rows of
     seam: Seam | None = field(init=False)
     layout: Layout = field(init=False)
     active: BoolArray = field(init=False)  # (K, n_block)
 
     def __post_init__(self) -> None:
+        self.spans = slice(0, self.basis.n_spans)
         self.layout = Layout(self.character.n_angles, len(self.points))
         self.active = self._active()
         self.seam = self._seam() if self.periodic else None
@@ -108,6 +110,32 @@ class Transcription:
         asked = self.discretised[: len(self.constraints)]
         twin.discretised = [*asked, *self._discretised(guards)]
         return twin
+
+    def within(self, spans: slice) -> "Transcription":
+        """The same with the rows of some spans alone. Only unknowns exist that act in no others."""
+        twin, basis = copy(self), self.basis
+        twin.spans = spans
+        first = basis.first_coefficient
+        begin = first[spans.start - 1] + ORDER if spans.start else 0
+        end = first[spans.stop] if spans.stop < basis.n_spans else basis.n_coefficients
+        twin.active = np.zeros_like(self.active)
+        twin.active[begin:end] = self.active[begin:end]
+        nodes = slice(GAUSS_NODES * spans.start, GAUSS_NODES * spans.stop)
+        twin.node_times, twin.node_spans = self.node_times[nodes], self.node_spans[nodes]
+        twin.node_weights = self.node_weights[nodes]
+        twin._node_basis = [each[nodes] for each in self._node_basis]
+        twin._node_force = self._node_force[nodes]
+        twin._balance = self._balance.some(inside(self._balance.span, spans))
+        twin.pins, twin.cones = self.pins.within(spans), self.cones.within(spans)
+        parts = [each.within(spans) for each in self.discretised]
+        twin.discretised = [each for each in parts if len(each.instants.times)]
+        return twin
+
+    @property
+    def blocks(self) -> slice:
+        """Blocks of unknowns that act in its spans."""
+        first = self.basis.first_coefficient
+        return slice(int(first[self.spans.start]), int(first[self.spans.stop - 1]) + ORDER)
 
     @property
     def owners(self) -> tuple[str, ...]:

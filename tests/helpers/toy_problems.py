@@ -21,7 +21,8 @@ from hangtime.solver.numerics.rotations import rotation_matrix
 from hangtime.solver.numerics.splines import ORDER, SplineBasis, phase_breaks
 from hangtime.solver.objectives.motion_metric import motion_target
 from hangtime.solver.objectives.tracking_cost import CostWeights, TrackingCost
-from hangtime.solver.optimisation.sqp import FeasibleSet, Outcome, restore
+from hangtime.solver.optimisation.restoration import restore
+from hangtime.solver.optimisation.sqp import FeasibleSet, Outcome
 from hangtime.solver.transcription.constraint import Constraint, ConstraintFunction, exchange
 from hangtime.solver.transcription.contact_pins import PointContact
 from hangtime.solver.transcription.joint_measures import TwistAngle

@@ -7,7 +7,8 @@ from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.human.human_guard import RangeLeft, recorded_ranges
 from hangtime.solver.optimisation.guards import in_the_way
-from hangtime.solver.optimisation.sqp import FeasibleSet, restore, worst_violation
+from hangtime.solver.optimisation.restoration import restore
+from hangtime.solver.optimisation.sqp import FeasibleSet, worst_violation
 from hangtime.solver.stages.setup import set_up
 from hangtime.solver.transcription.guard_rows import GuardRows
 from hangtime.tests.helpers.fitted_hop import fitted_hop

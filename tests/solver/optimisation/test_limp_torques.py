@@ -9,7 +9,7 @@ from hangtime.solver.data.requests import Requests, TorqueLimit
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.optimisation import limp_torques
 from hangtime.solver.optimisation.kkt_step import KktStep
-from hangtime.solver.optimisation.sqp import restore
+from hangtime.solver.optimisation.restoration import restore
 from hangtime.solver.stages.implicit import adapt
 from hangtime.solver.stages.setup import Setup, set_up
 from hangtime.tests.helpers.fitted_hop import fitted_hop

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray
-from ..numerics.dense_cholesky import DenseCholesky
+from ...arrays import BoolArray, FloatArray
+from ...numerics.dense_cholesky import DenseCholesky
 
 ENOUGH = 1e-6  # of the farthest row's way, that rows may be off, and slacks of pushing rows left
 MOST_STEPS = 40  # from twelve to 25 are the rule

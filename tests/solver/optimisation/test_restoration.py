@@ -7,7 +7,8 @@ import pytest
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.status import Status
-from hangtime.solver.optimisation.sqp import NEARLY_FEASIBLE, restore
+from hangtime.solver.optimisation.restoration import restore
+from hangtime.solver.optimisation.sqp import NEARLY_FEASIBLE
 from hangtime.solver.stages.setup import set_up
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 

@@ -4,8 +4,8 @@ limp limb: the working set is told, and multipliers from it meet the optimality 
 import numpy as np
 import pytest
 from hangtime.solver.arrays import FloatArray
-from hangtime.solver.optimisation.active_set import multipliers_by_active_set
-from hangtime.solver.optimisation.interior_point import predicted_sides
+from hangtime.solver.optimisation.bounds.active_set import multipliers_by_active_set
+from hangtime.solver.optimisation.bounds.interior_point import predicted_sides
 
 SOFT = 1e-7
 

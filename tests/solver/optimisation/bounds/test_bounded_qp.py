@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hangtime.solver.arrays import FloatArray, IntArray
 from hangtime.solver.numerics.block_banded import BANDWIDTH, BlockBanded, LocalColumns
-from hangtime.solver.optimisation import bounded_qp
-from hangtime.solver.optimisation.active_set import multipliers_by_active_set
-from hangtime.solver.optimisation.bounded_qp import BoundedStep
+from hangtime.solver.optimisation.bounds import bounded_qp
+from hangtime.solver.optimisation.bounds.active_set import multipliers_by_active_set
+from hangtime.solver.optimisation.bounds.bounded_qp import BoundedStep
 from hangtime.solver.transcription.rows import violation
 from hypothesis import example, given, settings
 from hypothesis import strategies as st

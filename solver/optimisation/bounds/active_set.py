@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray, IntArray
-from ..numerics.dense_cholesky import DenseCholesky
+from ...arrays import BoolArray, FloatArray, IntArray
+from ...numerics.dense_cholesky import DenseCholesky
 from .interior_point import predicted_sides
 
 ROUNDING = 1e-10  # of the farthest row's way, that a row may be beyond its bound

@@ -14,10 +14,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
-from ..numerics.block_banded import LocalColumns
-from ..numerics.tied_factor import Factor
-from ..transcription.rows import violation
+from ...arrays import FloatArray, IntArray
+from ...numerics.block_banded import LocalColumns
+from ...numerics.tied_factor import Factor
+from ...transcription.rows import violation
 from .active_set import multipliers_by_active_set
 
 CONSTRAINT_SOFTNESS = 1e-7  # of a row's own stiffness, so that rows may depend on others
