@@ -34,6 +34,7 @@ MAX_STEP = 0.3  # of s in one step
 MIN_STEP = 0.01  # of s: some milliseconds of a flight; the next step would change it by far less
 SETTLED = 0.05  # of s, that the last step may change it by: a twentieth of a flight
 MAX_STEPS = 4
+SHARES = (1.0, 0.5, 0.25)  # of a step, of which the first that gains is taken
 MAX_RATIO = 0.5  # of the violation, left at the end; the solve proper does the rest
 CLOSE = 0.1  # of the violation, from where a small step is the last
 
@@ -63,11 +64,16 @@ def find_durations(
     for steps in range(MAX_STEPS):
         at = x, timed.s, value
         step, change = _step(linearised, metric, problem, at, metric.times(x - reference))
-        changed, further = float(np.abs(change).max()), problem.timed(timed.s + change)
-        value = further.values(x + step)
-        now = linearised.violation(value)
+        for share in SHARES:
+            further = problem.timed(timed.s + share * change)
+            value = further.values(x + share * step)
+            now = linearised.violation(value)
+            if now < left:
+                break
+        changed = float(np.abs(change).max())
         if not now < left:
             break
+        step = share * step
         x, timed, left = x + step, further, now
         if steps > 0 and changed < MIN_STEP and left < CLOSE * before:
             break
