@@ -51,28 +51,38 @@ def _hierarchy(reader: Reader) -> list[_Draft]:
     while (line := reader.take("ROOT or MOTION")) and not line.starts("motion"):
         if not line.starts("root"):
             reader.fail(line.number, f"'{line.words[0]}' where ROOT or MOTION should stand")
-        _joint(reader, line, -1, drafts)
+        _tree(reader, line, drafts)
     if not drafts:
         reader.fail(line.number, "no ROOT before MOTION")
     return drafts
 
 
-def _joint(reader: Reader, title: Line, parent: int, drafts: list[_Draft]) -> None:
-    draft = _Draft(_unique_name(reader, title, drafts), parent)
-    index = len(drafts)
-    drafts.append(draft)
-    _brace(reader, "{")
-    draft.offset = _offset(reader)
-    draft.channels = _channels(reader)
-    while not (line := reader.take(f"}} of '{draft.name}'")).starts("}"):
-        if line.starts("joint"):
-            _joint(reader, line, index, drafts)
+def _tree(reader: Reader, title: Line, drafts: list[_Draft]) -> None:
+    """A root and all below it, by a stack: chains may be longer than calls may be nested."""
+    begun = [_joint(reader, title, -1, drafts)]
+    while begun:
+        draft = drafts[begun[-1]]
+        line = reader.take(f"}} of '{draft.name}'")
+        if line.starts("}"):
+            begun.pop()
+        elif line.starts("joint"):
+            begun.append(_joint(reader, line, begun[-1], drafts))
         elif line.starts("end", "site"):
             _brace(reader, "{")
             draft.tip = _offset(reader)
             _brace(reader, "}")
         else:
             reader.fail(line.number, f"'{line.words[0]}' where JOINT, End Site or }} should stand")
+
+
+def _joint(reader: Reader, title: Line, parent: int, drafts: list[_Draft]) -> int:
+    """Index of the joint whose block begins here, with its offset and channels."""
+    draft = _Draft(_unique_name(reader, title, drafts), parent)
+    drafts.append(draft)
+    _brace(reader, "{")
+    draft.offset = _offset(reader)
+    draft.channels = _channels(reader)
+    return len(drafts) - 1
 
 
 def _unique_name(reader: Reader, title: Line, drafts: list[_Draft]) -> str:

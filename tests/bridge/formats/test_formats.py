@@ -232,6 +232,15 @@ def test_malformed_bvh_gives_its_line(tmp_path: Path, text: str, line: int) -> N
     assert (caught.value.path, caught.value.line) == (str(path), line)
 
 
+def test_a_chain_may_be_longer_than_calls_may_be_nested(tmp_path: Path) -> None:
+    joints = 2000
+    inner = "".join(f"JOINT J{i}\n{{\nOFFSET 0 1 0\nCHANNELS 0\n" for i in range(joints))
+    root = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 0\n"
+    text = root + inner + "}\n" * (joints + 1) + "MOTION\nFrames: 0\n"
+    with pytest.raises(UnreadableClip, match="no frames"):
+        read_bvh(bvh_file(tmp_path, text))
+
+
 @pytest.mark.parametrize(("value", "line"), [("nan", 19), ("inf", 20), ("-1e999", 20)])
 def test_bvh_key_that_is_not_finite_names_bone_and_frame(
     tmp_path: Path, value: str, line: int
