@@ -9,6 +9,7 @@ from ...solver.arrays import FloatArray
 from .motion_clip import Joint, MotionClip, euler_matrices
 from .text import Line, Reader, require_finite
 
+FRAME_TIMES = (1e-4, 1e4)  # s; Blender's scenes have no rates far beyond, and no camera has
 _CHANNELS = {f"{axis}{kind}" for axis in "xyz" for kind in ("position", "rotation")}
 
 
@@ -156,6 +157,10 @@ def _frame_time(reader: Reader) -> float:
     seconds = reader.numbers(line.number, line.words[2:], 1)[0]
     if seconds <= 0.0:
         reader.fail(line.number, "the frame time is not positive")
+    least, most = FRAME_TIMES
+    if not least <= seconds <= most:
+        problem = f"'{line.words[2]}' is no frame time, which is from {least:g} to {most:g} s"
+        reader.fail(line.number, f"{problem}; write 1 / the frames a second, such as 0.0083333")
     return _unrounded(line.words[2], seconds)
 
 

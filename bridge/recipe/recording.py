@@ -43,6 +43,7 @@ SOME = NumberRange(
     lambda value: 1.0 <= abs(value) <= MOST_MISSING and value.is_integer(),
 )
 SCALE = NumberRange("from 0.0001 to 10000", lambda value: 1e-4 <= value <= 1e4)  # any unit's
+RATE = NumberRange("from 0.0001 to 10000 frames a second", lambda value: 1e-4 <= value <= 1e4)
 NEAR_LEVEL = NumberRange("from -5 to 5 m/s", lambda value: abs(value) <= 5.0)
 COUNT = NumberRange("a whole number, 0 or more", lambda value: value >= 0.0 and value.is_integer())
 
@@ -127,7 +128,7 @@ FILE = Kind(
     (
         number("unit", ABOVE_ZERO),
         one("up", _read_up),
-        number("rate", ABOVE_ZERO),
+        number("rate", RATE),
         word("asf"),
         word("armature"),
         word("take"),

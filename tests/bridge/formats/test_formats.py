@@ -219,6 +219,8 @@ def test_more_frames_than_announced_are_read_and_counted(tmp_path: Path) -> None
         (edited(BVH, 17, "Frames: 3"), 20),
         (edited(BVH, 18, "Frame Time: 0"), 18),
         (edited(BVH, 18, "Frame Time: soon"), 18),
+        (edited(BVH, 18, "Frame Time: 1e-30"), 18),
+        (edited(BVH, 18, "Frame Time: 1e30"), 18),
         (edited(BVH, 19, "1 11 2 90 0 0 0 0"), 19),
         (edited(BVH, 20, "1 12 2 0 0 90 0 90 90 7"), 20),
         (edited(BVH, 20, "1 12 2 0 0 9O 0 90 90"), 20),
