@@ -18,10 +18,12 @@ from ..recipe_syntax.items import (
     vector,
     word,
 )
-from ..recipe_syntax.table import Table
+from ..recipe_syntax.table import NumberRange, Table
 from ..recipe_syntax.toml_text import entries
 
 SPAN = ("start_frame", "end_frame")
+# More than one is asked about; a clip has no time for more than ten.
+TEN_TURNS = NumberRange("from -3600 to 3600 degrees", lambda value: abs(value) <= 3600.0)
 
 
 def _read_offset(table: Table) -> Values:
@@ -78,7 +80,7 @@ PIN = Kind(
         word("step"),
         Item((*TRAVEL_WORDS, "offset"), _read_offset, _write_offset),
         vector("place"),
-        angle("turn"),
+        angle("turn", TEN_TURNS),
         word("on"),
     ),
     needs=(("phase",),),

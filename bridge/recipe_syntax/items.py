@@ -7,12 +7,13 @@ from enum import Enum
 from typing import Any, Generic, TypeVar
 
 from ...solver.data.requests import Moment, When
-from .table import ANY_NUMBER, NOT_NEGATIVE, NumberRange, Table
+from .table import ANY_NUMBER, NOT_NEGATIVE, NumberRange, Table, shown
 from .toml_text import degrees, entries
 
 Values = dict[str, Any]
 Record = TypeVar("Record")
 
+LEAST_LENGTH = 1e-6  # of a direction; shorter ones are zero, or a slip
 TURNS = NumberRange("from -360 to 360 degrees", lambda value: -360.0 <= value <= 360.0)
 TRAVEL_KEYS = ("forward", "left", "up")
 AGAINST = ("back", "right", "down")  # the other way along each
@@ -149,8 +150,8 @@ def vector(key: str) -> Item:
 def direction(table: Table, key: str) -> tuple[float, float, float] | None:
     """A vector that points somewhere; as long as it is written."""
     values = table.vector(key)
-    if values is not None and not any(values):
-        table.refuse(key, f'"{key}" must point somewhere; [0, 0, 0] does not')
+    if values is not None and math.hypot(*values) < LEAST_LENGTH:
+        table.refuse(key, f'"{key}" must point somewhere; {shown(table.values[key])} does not')
     return values
 
 

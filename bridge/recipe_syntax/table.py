@@ -23,6 +23,7 @@ class NumberRange:
 
 
 NUL = '"{}" holds the character NUL (\\u0000); leave that out'
+MOST = 1e9  # of any key, in its unit
 ANY_NUMBER = NumberRange("a number", lambda _: True)
 ABOVE_ZERO = NumberRange("above zero", lambda value: value > 0.0)
 NOT_NEGATIVE = NumberRange("zero or more", lambda value: value >= 0.0)
@@ -90,6 +91,7 @@ class Table:
         value = self.values[key]
         if not _is_number(value):
             self.refuse(key, f'"{key}" must be a number, not {shown(value)}')
+        self._meant(key, value)
         if not allowed.holds(float(value)):
             self.refuse(key, f'"{key}" must be {allowed.words}, not {value:g}')
         return float(value)
@@ -114,7 +116,14 @@ class Table:
         right = isinstance(value, list) and len(value) == form.count(",") + 1
         if not right or not all(map(_is_number, value)):
             self.refuse(key, f'"{key}" must be {form} in finite numbers, not {shown(value)}')
+        for each in value:
+            self._meant(key, each)
         return list(map(float, value))
+
+    def _meant(self, key: str, value: float) -> None:
+        """Refuses a number that is beyond any amount, before something is computed from it."""
+        if abs(value) > MOST:
+            self.refuse(key, f'"{key}" is {value:g}; no amount in a recipe is beyond {MOST:g}')
 
     def all_numbers(self, key: str) -> tuple[float, ...]:
         """Any number of finite numbers, but not none."""

@@ -13,6 +13,8 @@ _HINTS = (
     (re.compile(r"[+-]?\.\d"), "a number begins with a digit, such as 0.5"),
     (re.compile(r"[^\W\d]"), "a text needs quotes, and true and false are lower case"),
 )
+# A table's name as tomllib tells it, ('body', 'parts').
+_PYTHON_KEY, _PART = re.compile(r"\(('[^']*',? ?)+\)"), re.compile(r"'([^']*)'")
 _ABSURD = (ValueError, RecursionError)  # a number of 5,000 digits; 1,000 brackets
 
 
@@ -36,6 +38,7 @@ def _no_toml(text: str, path: str, why: str) -> BadRecipe:
     """The fault of a text of which tomllib says why it is no TOML: what stands there, and what
     was probably meant."""
     message, _, place = why.rpartition(" (at ")
+    message = _PYTHON_KEY.sub(lambda key: f"[{'.'.join(_PART.findall(key[0]))}]", message)
     told = re.fullmatch(r"line (\d+), column (\d+)\)", place)
     if told is None:  # past the last character
         return BadRecipe(path, text.count("\n") + 1, f"not TOML ({message}); correct the line")

@@ -12,6 +12,7 @@ from ...bridge.recipe.export import ExportOptions
 from ...bridge.recipe.keys import KeyOptions, require_every_frame
 from ...bridge.recipe.objects import placed_objects
 from ...bridge.recipe.problem import PARTS, STATURE, Recipe, parse_recipe, read_recipe_text
+from ...bridge.recipe.recording import RATE
 from ...bridge.recipe.result import ResultOptions
 from ...solver.data.faults import BadRecipe, Fault, NoSolution, OptionNotTaken
 from ...solver.data.problem import MotionProblem
@@ -99,7 +100,7 @@ def _add_clip_options(each: argparse.ArgumentParser, *, optional: bool) -> None:
     each.add_argument("--up", choices=("Y", "Z"), type=str.upper, help="axis that points up")
     each.add_argument(
         "--rate",
-        type=_positive,
+        type=_rate,
         metavar="HZ",
         help="frames a second of an AMC file, or instead of what a BVH file tells",
     )
@@ -132,6 +133,13 @@ def _positive(text: str) -> float:
     if number <= 0.0:
         raise argparse.ArgumentTypeError(f"{text} is not above zero")
     return number
+
+
+def _rate(text: str) -> float:
+    rate = _number(text)
+    if not RATE.holds(rate):
+        raise argparse.ArgumentTypeError(f"{text} is not {RATE.words}")
+    return rate
 
 
 def _stature(text: str) -> float:

@@ -84,9 +84,9 @@ class LinearisedProblem:
         self._window = transcription.blocks
         self._equal = np.flatnonzero(rows.equal)
         scale = by_kind(rows.kind[self._equal], ROW_SCALES)
-        self._spans = transcription.spans
-        self._first = transcription.basis.first_coefficient[self._spans] - self._window.start
-        rows, first = self._in_window(rows), self._first
+        spans = transcription.spans  # of whose window the rows' spans and blocks are counted
+        self._first = transcription.basis.first_coefficient[spans] - self._window.start
+        rows, first = replace(rows, span=rows.span - spans.start), self._first
         into = None if last is None else last.equalities
         self._equalities = SpanRows.of(rows, self._equal, scale, first, basis, into)
         weight = transcription.character.mass * STANDARD_GRAVITY
@@ -98,11 +98,6 @@ class LinearisedProblem:
             ties = ties if basis is None else np.einsum("knr,nb->kbr", ties, basis)
             self._factor = TiedFactor.of(self._factor, ties)
         self._bound(transcription, rows, None if last is None else last.sides)
-
-    def _in_window(self, rows: Rows) -> Rows:
-        """The same rows with their spans counted from the window's first."""
-        start = self._spans.start
-        return replace(rows, span=rows.span - start) if start else rows
 
     def _system(self, into: BlockBanded | None = None) -> BlockBanded:
         """A, see above."""
@@ -128,7 +123,7 @@ class LinearisedProblem:
         twin = copy(self)
         kept = self.rows.unguarded
         sides = np.concatenate([self._sides[: len(kept.value)], np.zeros(len(guards.value))])
-        twin._bound(transcription, Rows.join([kept, self._in_window(guards)]), sides)
+        twin._bound(transcription, Rows.join([kept, guards]), sides)
         return twin
 
     def renewed(self) -> "LinearisedProblem":
@@ -172,7 +167,7 @@ class LinearisedProblem:
     def times(self, d: FloatArray) -> FloatArray:
         """(R,) first-order change of the rows' values by a change d (K, n_block) of the unknowns,
         of which only what the basis allows counts."""
-        d = d[self._window] if self._basis is None else d[self._window] @ self._basis
+        d = d if self._basis is None else d @ self._basis
         change = np.empty(len(self.rows.value))
         change[self._equal] = self._equalities.times(d)[self._equalities.where]
         change[self._free] = self._bound_values(d)
@@ -235,9 +230,8 @@ class LinearisedProblem:
         if multipliers is not None:
             y[windows.where] = multipliers[self._equal]
         blocks = self._window.stop - self._window.start
-        if gradient is not None:
-            gradient = gradient[self._window]
-            gradient = gradient if self._basis is None else gradient @ self._basis
+        if gradient is not None and self._basis is not None:
+            gradient = gradient @ self._basis
         d = np.zeros((blocks, windows.size))
         residual = r
         enough = SWEEP_REST * self._scaled(self._tolerance, self._equal)

@@ -8,7 +8,7 @@ cost that does not grow with the motion.
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..numerics.block_banded import BlockBanded
 from ..numerics.splines import ORDER
 from ..transcription.rows import Rows
@@ -55,9 +55,9 @@ def local_step(
     return problem.step(_without_edges(t, rows, free), limp_to_middle=True).d
 
 
-def _without_edges(t: Transcription, rows: Rows, free: FloatArray) -> FloatArray:
-    """(R,) values of the rows, in which equalities hold that depend on blocks that stay: they
-    nearly do, and what is free of their unknowns could not settle the rest."""
+def _without_edges(t: Transcription, rows: Rows, free: BoolArray) -> FloatArray:
+    """(R,) values of the rows, of which those hold that depend on blocks that stay: they nearly
+    do, and what is free of their unknowns could not settle the rest."""
     first = t.basis.first_coefficient[rows.span] - t.blocks.start
-    edge = rows.equal & ~free[first[:, None] + np.arange(ORDER)].all(axis=1)
-    return np.where(edge, rows.lower, rows.value)
+    inner = free[first[:, None] + np.arange(ORDER)].all(axis=1)
+    return np.where(inner, rows.value, rows.value.clip(rows.lower, rows.upper))

@@ -21,6 +21,7 @@ MAX_STEPS = 30  # of a restoration
 MIN_RESTORATION_LENGTH = 0.005
 STALL_WINDOW = 6  # steps in which the violation has to halve
 MAX_CREEPING = 3  # steps in a row that are shorter than a tenth: such solves arrive nowhere
+LOCAL_GAIN = 0.5  # of the violation, which a step in parts may leave: they are not to creep
 RECOVERED = 0.9  # of the violation before a watched step, which the one after it must reach
 # Times the tolerances: from further off guards join where a step leads; once more this near, for
 # what joins where all the rest holds costs steps of its own.
@@ -37,7 +38,6 @@ def restore(
     *,
     stage: str,
     max_steps: int = MAX_STEPS,
-    enough: float = 1.0,
     max_turn: float = np.inf,
     progress: Progress | None = None,
     wider: Wider | None = None,
@@ -50,21 +50,22 @@ def restore(
     own steps end where shortened ones creep; if the one after it does not make up for it, both are
     taken back (the watchdog technique of Chamberlain, Powell, Lemarechal and Pedersen 1982). While
     steps gain an order of magnitude, the next one uses the same Jacobian and factor, which costs a
-    third of a new one (chord steps). enough: the violation at which it ends, of a motion that other
-    steps go on from. max_turn: rad, of a joint in one step. wider: asked where a step with a new
-    Jacobian would lead, where the rows nearly hold, and where they hold, for a set with more guard
-    rows to go on in. Those that join ahead of a step cost it no new factor, and what they ask for
-    is in one step with all else. last: what a step before it leaves, with the same rows.
+    third of a new one (chord steps). Where few spans are violated the next step is of what is about
+    them (local_steps.py). max_turn: rad, of a joint in one step. wider: asked where a step of the
+    whole with a new Jacobian would lead, where the rows nearly hold, and where they hold, for a set
+    with more guard rows to go on in. Those that join ahead of a step cost it no new factor, and
+    what they ask for is in one step with all else. last: what a step before it leaves, with the
+    same rows.
     """
     iterate = _ChordIterate(feasible, metric, x, max_turn, wider, last)
-    join, asked = [enough, GUARDS_JOIN], None  # asked: x, where nothing new can join
+    join, asked = [1.0, GUARDS_JOIN], None  # asked: x, where nothing new can join
     steps: list[Step] = []
     status = Status.TOO_MANY_STEPS
     while True:
         if iterate.x is not asked and iterate.violation <= join[-1]:
             asked, join = iterate.x, join[:1]
             iterate.widen(iterate.x)
-        if iterate.violation <= enough:
+        if iterate.violation <= 1.0:
             status = Status.SOLVED
             break
         if len(steps) >= max_steps:
@@ -75,7 +76,7 @@ def restore(
         steps.append(step)
         if progress is not None:
             progress(step, iterate.feasible.motion(iterate.kept))
-        if iterate.violation > enough and (step.length == 0.0 or _stagnant(steps)):
+        if iterate.violation > 1.0 and (step.length == 0.0 or _stagnant(steps)):
             status = Status.STALLED
             break
     if status is not Status.SOLVED:
@@ -160,18 +161,20 @@ class _ChordIterate:
         return parts_around(np.unique(linearised.rows.span[violated]), t.basis.breaks)
 
     def _advance_in(self, parts: list[slice], stage: str) -> Step | None:
-        """Takes a step in each of these parts; None, and none any more, where that is no whole
-        step that gains."""
+        """Takes a step in each of these parts; None where that would turn a joint too far, and
+        none any more where it gains little."""
         feasible, linearised = self.feasible, self._linearised
         assert linearised is not None
         t, places, basis = feasible.transcription, feasible.places, feasible.basis
         d = np.zeros_like(self.x)
         for part in parts:
             d += local_step(t, places, self._metric, self.x, part, basis)
+        if self._longest(d) < 1.0:
+            return None
         value = feasible.values(self.x + d)
         before, worst = self.violation, linearised.worst_owner(self._value)
         violation = linearised.violation(value)
-        if self._longest(d) < 1.0 or not violation < RECOVERED * before:
+        if not violation <= max(1.0, LOCAL_GAIN * before):
             self._whole = True
             return None
         self.x, self._value, self.violation = self.x + d, value, violation
@@ -228,7 +231,8 @@ class _ChordIterate:
         kept = np.arange(len(self._value)) < len(self._value) - self._guards
         self._value = np.concatenate([self._value[kept], guards.value])
         joined = worst_violation(guards)
-        self._guards, self._stale = len(guards.value), joined > MAX_CHORD_GUARDED
+        self._guards = len(guards.value)
+        self._stale = self._stale or joined > MAX_CHORD_GUARDED
         self._rows = self._watched = self._remains = None  # these rows are others
         self.violation, self._before = max(self.violation, joined), np.inf
         return True

@@ -112,9 +112,12 @@ class Transcription:
         return twin
 
     def within(self, spans: slice) -> "Transcription":
-        """The same with the rows of some spans alone. Only unknowns exist that act in no others."""
+        """The same with the rows of some spans alone. Only unknowns exist that act in no others.
+
+        For a step in a part (local_steps.py), without seam; `guards` are those of the whole.
+        """
         twin, basis = copy(self), self.basis
-        twin.spans = spans
+        twin.spans, twin.seam = spans, None
         first = basis.first_coefficient
         begin = first[spans.start - 1] + ORDER if spans.start else 0
         end = first[spans.stop] if spans.stop < basis.n_spans else basis.n_coefficients

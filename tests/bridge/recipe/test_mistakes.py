@@ -27,6 +27,26 @@ def test_a_clip_that_no_file_can_be_called_is_refused() -> None:
     assert "holds the character NUL" in fault.problem
 
 
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ('[[pin]]\nphase = "ground 2"\nforward = 1e300\n', '"forward" is 1e+300; no amount'),
+        ('[[cone]]\nbone = "A"\nhalf_angle = 30\naxis = [1e200, 0, 0]\n', '"axis" is 1e+200'),
+        (
+            '[[cone]]\nbone = "A"\nhalf_angle = 30\naxis = [1e-200, 0, 0]\n',
+            "[1e-200, 0, 0] does not",
+        ),
+        ('[[pin]]\nphase = "ground 2"\nturn = 1e8\n', "from -3600 to 3600 degrees"),
+        ("[body]\n[body]\n", "Cannot declare [body] twice"),
+        ("[body.parts]\n[body.parts]\n", "Cannot declare [body.parts] twice"),
+    ],
+)
+def test_amounts_that_nobody_means_and_doubled_tables_are_told_in_words(
+    text: str, told: str
+) -> None:
+    assert told in refused(text).problem
+
+
 WRONG = [  # what stands in FULL, and what it is replaced by, whose last line is refused
     ('moment = "apex"', 'moment = "top"'),
     ('moment = "apex"', 'moment = "apex"\nframe = 3'),

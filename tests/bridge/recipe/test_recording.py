@@ -26,7 +26,9 @@ def test_how_a_file_is_read_comes_back() -> None:
     assert parse_recipe("mass = 70\n").file == FileReading()
 
 
-@pytest.mark.parametrize("line", ["unit = 0", 'up = "X"', "up = 1", "rate = -30", "rate = 1e12", 'scale = "1"'])
+@pytest.mark.parametrize(
+    "line", ["unit = 0", 'up = "X"', "up = 1", "rate = -30", "rate = 1e12", 'scale = "1"']
+)
 def test_a_mistake_about_the_file_is_told_with_its_line(line: str) -> None:
     with pytest.raises(BadRecipe) as told:
         parse_recipe(f"[file]\n{line}\n")
