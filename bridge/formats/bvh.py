@@ -9,6 +9,8 @@ from ...solver.arrays import FloatArray
 from .motion_clip import Joint, MotionClip, euler_matrices
 from .text import Line, Reader, require_finite
 
+FARTHEST = 1e7  # units of the file, of a joint from its parent
+MOST_DIGITS = 9  # of a number of frames, which are three months at 120 a second
 FRAME_TIMES = (1e-4, 1e4)  # s; Blender's scenes have no rates far beyond, and no camera has
 _CHANNELS = {f"{axis}{kind}" for axis in "xyz" for kind in ("position", "rotation")}
 
@@ -109,7 +111,11 @@ def _offset(reader: Reader) -> FloatArray:
     line = reader.take("OFFSET")
     if not line.starts("offset"):
         reader.fail(line.number, f"'{line.words[0]}' where OFFSET should stand")
-    return reader.numbers(line.number, line.words[1:], 3)
+    offset = reader.numbers(line.number, line.words[1:], 3)
+    if np.abs(offset).max() > FARTHEST:
+        problem = f"an offset of {np.abs(offset).max():g} is no bone's; correct it, or export anew"
+        reader.fail(line.number, problem)
+    return offset
 
 
 def _channels(reader: Reader) -> list[str]:
@@ -145,6 +151,8 @@ def _frame_count(reader: Reader) -> int:
     line = reader.take("Frames:")
     if not line.starts("frames:") or len(line.words) != 2 or not line.words[1].isdecimal():
         reader.fail(line.number, "'Frames:' and a whole number should stand here")
+    if len(line.words[1]) > MOST_DIGITS:
+        reader.fail(line.number, f"'{line.words[1][:MOST_DIGITS]}…' is no number of frames")
     if int(line.words[1]) == 0:
         reader.fail(line.number, "the file holds no frames")
     return int(line.words[1])

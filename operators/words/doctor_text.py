@@ -170,8 +170,9 @@ def damage_sentence(damage: Damage) -> str:
 
 
 def amount_text(finding: Finding) -> str:
-    """Such as "35°" and "40 cm"."""
-    return f"{finding.amount:.0f}{'' if finding.unit == '°' else ' '}{finding.unit}"
+    """Such as "35°" and "40 cm"; "5.64e+38 cm" of a slip of the file."""
+    number = f"{finding.amount:.0f}" if finding.amount < 1e6 else f"{finding.amount:.3g}"
+    return f"{number}{'' if finding.unit == '°' else ' '}{finding.unit}"
 
 
 def foot_fault_words(fault: FootFault) -> str:
