@@ -68,13 +68,11 @@ class Transcription:
     periodic: bool = False
     course: tuple[float, float] | None = None
     support: SupportForce | None = None
-    spans: slice = field(init=False)  # that it has rows of
     seam: Seam | None = field(init=False)
     layout: Layout = field(init=False)
     active: BoolArray = field(init=False)  # (K, n_block)
 
     def __post_init__(self) -> None:
-        self.spans = slice(0, self.basis.n_spans)
         self.layout = Layout(self.character.n_angles, len(self.points))
         self.active = self._active()
         self.seam = self._seam() if self.periodic else None
@@ -117,7 +115,7 @@ class Transcription:
         For a step in a part (local_steps.py), without seam; `guards` are those of the whole.
         """
         twin, basis = copy(self), self.basis
-        twin.spans, twin.seam = spans, None
+        twin.seam = None
         first = basis.first_coefficient
         begin = first[spans.start - 1] + ORDER if spans.start else 0
         end = first[spans.stop] if spans.stop < basis.n_spans else basis.n_coefficients
@@ -133,6 +131,11 @@ class Transcription:
         parts = [each.within(spans) for each in self.discretised]
         twin.discretised = [each for each in parts if len(each.instants.times)]
         return twin
+
+    @property
+    def spans(self) -> slice:
+        """That it has rows of."""
+        return slice(int(self.node_spans[0]), int(self.node_spans[-1]) + 1)
 
     @property
     def blocks(self) -> slice:

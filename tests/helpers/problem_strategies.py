@@ -2,6 +2,7 @@
 
 import math
 
+from hangtime.bridge.recipe_syntax.items import LEAST_LENGTH
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import (
     AddedMass,
@@ -49,7 +50,7 @@ POSITIVE = st.floats(1e-3, 1e3)
 SPANS = st.floats(MIN_SPAN, 1e3)
 NOT_NEGATIVE = st.floats(0.0, 1e3)
 VECTORS = st.tuples(NUMBERS, NUMBERS, NUMBERS)
-DIRECTIONS = VECTORS.filter(any)
+DIRECTIONS = VECTORS.filter(lambda vector: math.hypot(*vector) > LEAST_LENGTH)
 ANGLES = st.integers(-360, 360).map(math.radians)
 SLACKS = st.integers(0, 20).map(math.radians)
 WORDS = st.lists(NAMES, max_size=3).map(tuple)

@@ -9,6 +9,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import count
+from math import pi
 from pathlib import Path
 from threading import Event, Thread, Timer
 from typing import Any, BinaryIO
@@ -208,7 +209,8 @@ def test_a_process_that_was_stopped_once_it_had_answered_is_replaced(
 def test_a_solve_that_is_stopped_gives_the_motion_as_it_stands(
     fitted: Worker, jump: Recording
 ) -> None:
-    job = started(fitted, jump, AHEAD)
+    turned = Pin("turned", "ground 2", offset=(0.5, 0.0, 0.3), turn=0.5 * pi)  # of many steps
+    job = started(fitted, jump, MotionProblem(frames=SPAN, pins=(turned,)))
     fitted.as_it_stands()
     answer = job.wait()
     assert isinstance(answer, Adapted)
