@@ -120,17 +120,19 @@ class Table:
             self._meant(key, each)
         return list(map(float, value))
 
-    def _meant(self, key: str, value: float) -> None:
-        """Refuses a number that is beyond any amount, before something is computed from it."""
-        if abs(value) > MOST:
-            self.refuse(key, f'"{key}" is {value:g}; no amount in a recipe is beyond {MOST:g}')
-
     def all_numbers(self, key: str) -> tuple[float, ...]:
         """Any number of finite numbers, but not none."""
         value = self.values[key]
         if not isinstance(value, list) or not value or not all(map(_is_number, value)):
             self.refuse(key, f'"{key}" must be finite numbers in brackets, not {shown(value)}')
+        for each in value:
+            self._meant(key, each)
         return tuple(map(float, value))
+
+    def _meant(self, key: str, value: float) -> None:
+        """Refuses a number that is beyond any amount, before something is computed from it."""
+        if abs(value) > MOST:
+            self.refuse(key, f'"{key}" is {value:g}; no amount in a recipe is beyond {MOST:g}')
 
     def word(self, key: str) -> str | None:
         """A text that is not empty, None where absent."""

@@ -78,6 +78,7 @@ WRONG = [  # what stands in FULL, and what it is replaced by, whose last line is
     ("at_most = 90", "at_most = 5"),
     ("at_most = 90", "at_most = 90\nfixed = 45"),
     ("fixed = 45", "fixed = 45\nat_least = 3"),
+    ("weights = [1, 0, 0]", "weights = [1e300]"),
     ("fixed = 45", 'fixed = "straight"'),
     ("fixed = 45", "fixed = 500"),
     ("at_most = 90", "at_most = 361"),
