@@ -10,7 +10,7 @@ from ..data.faults import NotBetweenFrames
 from ..data.problem import Mend
 
 MOST_MISSING = 1000  # frames in one place; what lies between seconds apart is anybody's guess
-STEEPEST = 10.0  # °; no camera is so far off the level
+STEEPEST = 30.0  # °; from 45 on another axis is up
 
 
 class UpAxis(Enum):

@@ -66,7 +66,7 @@ DAMAGES = (
     *map(gap, (3, 6)),
     gap(2, 2),
     *map(sliding, (0.05, 0.1, 0.2, 0.5)),
-    *map(tilted, (-1.5, 3.0)),
+    *map(tilted, (-1.5, 3.0, 12.0)),
     rising(0.1),
     floating(0.05, 2.0),
     floating(0.15, 3.0),

@@ -35,6 +35,7 @@ from ..repairs import Repairs
 from ..retimed import explained, find_retimed
 from ..stance.feet import find_sliding_feet
 from ..stance.footing import find_footing
+from ..stance.in_place import find_in_place
 from ..stance.tilted import find_tilt
 from ..stretch import CUTTING, Span, longest_stretch
 from ..upright import find_level_hips, find_up
@@ -165,14 +166,22 @@ def diagnose(
 
     trusted, seconds = _trusted(found, rate), float(recording.times[-1])
 
+    def stood(repairs: Repairs) -> Performance:
+        return as_stood(performed(repairs), scene)
+
+    def moved(placed: Repairs) -> tuple[Finding, ...]:
+        """Of hips whose own way was left out nothing else is told: falls are bent, too."""
+        if (in_place := find_in_place(stood(placed))) is not None:
+            return (in_place,)
+        upright = performed(placed)
+        tilt = find_tilt(upright, figure, beneath(upright.recording, scene))
+        drifts = find_drifts(stood, figure, placed.joined(remedy_of(tilt)))
+        return (tilt, *drifts) if tilt else tuple(drifts)
+
     def standing(placed: Repairs) -> Stance:
-        upright = performed(placed).recording
-        tilt = find_tilt(upright, figure, beneath(upright, scene))
-        placed = placed.joined(remedy_of(tilt))
-        drifts = find_drifts(lambda repairs: as_stood(performed(repairs), scene), figure, placed)
+        drifts = moved(placed)
         placed = placed.joined(joined_remedies(drifts))
-        footing = find_footing(as_stood(performed(placed), scene), touched(placed))
-        return Stance((tilt, *drifts) if tilt else tuple(drifts), tuple(footing))
+        return Stance(drifts, tuple(find_footing(stood(placed), touched(placed))))
 
     def find_part(placed: Repairs) -> Finding | None:
         """A part that was retimed; where all is, none is told apart."""
@@ -201,17 +210,16 @@ def diagnose(
     if seconds < MIN_CLIP_DURATION:
         found.append(Finding(FindingKind.TOO_SHORT, seconds, "s"))
     placed = joined_remedies((*scales, *stance.drifts))
-    stood = as_stood(performed(placed), scene)
     retimed = find_part(placed)
     if retimed is not None:
         found.append(retimed)
     found += stance.drifts
     found += stance.footing if retimed is None else explained(stance.footing, retimed)
-    feet = find_sliding_feet(stood)
+    feet = find_sliding_feet(stood(placed))
     if feet is not None and not any(finding.kind in WHOLE_BODY for finding in found):
         found.append(feet)
     fitting = None
-    height = stood.character.height
+    height = stood(placed).character.height
     if mass is not None and not (MASS_BY_SQUARE[0] < mass / height**2 < MASS_BY_SQUARE[1]):
         fitting = USUAL_MASS_BY_SQUARE * height**2
         found.append(Finding(FindingKind.MASS, mass, "kg"))

@@ -10,7 +10,6 @@ from ..finding import Finding
 from ..repairs import Repairs
 from ..stance.floating import find_floating
 from ..stance.footing import find_rise, find_sliding
-from ..stance.in_place import find_in_place
 
 
 def find_drifts(
@@ -19,11 +18,9 @@ def find_drifts(
     """At one speed upwards, at one along the floor, and at speeds that change.
 
     stood: the recording with repairs, as seen from what it stands on. placed: those that give it
-    its right size and time. Of hips whose own way was left out nothing else is told. What floats
-    may seem to drift at one speed, too: where its own remedy leaves no such drift, there is none.
+    its right size and time. What floats may seem to drift at one speed, too: where its own remedy
+    leaves no such drift, there is none.
     """
-    if (in_place := find_in_place(stood(placed))) is not None:
-        return [in_place]
     steady = _steady(stood, figure, placed)
     joined = placed
     for finding in steady:

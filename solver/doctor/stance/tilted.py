@@ -1,14 +1,15 @@
-"""A floor that slopes: heights at which feet stand lie in a plane that is not level, as capture by
-a camera has it that was not."""
+"""A floor that slopes, as capture by a camera has it that was not level: heights at which feet
+stand lie in a plane, whoever is in the air falls along it, and whoever stands on it leans."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import atan, degrees, radians, tan
 
 import numpy as np
 
+from ...analysis.performance import Performance
 from ...arrays import FloatArray
 from ...data.recording import Recording
 from ...numerics.runs import runs
@@ -16,11 +17,17 @@ from ...scene.support import Heights
 from ...skeleton.parts import SIDES
 from ..figure import Figure
 from ..finding import Finding, FindingKind
-from ..repairs import Repairs
+from ..plumb import Plumb, find_plumb
+from ..repairs import STEEPEST, Repairs
 from .flat_feet import STANDING_SPEED_UP, foot_ends
 
-# Of clean clips up to 0.6°; steps and boxes slope by 8° and more, which no camera does.
+# Of clean clips up to 0.6°. Steps and boxes slope by 8° and more, but there nobody leans.
 LEAST, MOST = 0.7, 4.0  # °
+SURELY_TURNED = 4.0  # times what falls are unsure by: of clean clips 1.6
+LEANING = radians(3.0)  # by which who walks or runs on a level floor leans in the mean, or less
+# Falls are bent where the body sways, and several of them each otherwise; feet slide then, too.
+SEVERAL = 3
+STILL, LEAST_STANDING = 0.06, 0.2  # m/s, of the median stance of so many s
 REACH = 0.05  # s, before and after, over which a ball's speed is told; a run's stands for 0.15 s
 SLOW = 0.4  # m/s, along the floor, of a ball that stands; one that is lifted goes faster
 LIFTED = 0.08  # m above the other foot's
@@ -41,29 +48,78 @@ HEIGHT, SLOPE, APART = 0.008, tan(radians(1.5)), 0.01
 MOST_APART = 0.012  # m; of feet on steps more
 
 
-def find_tilt(recording: Recording, figure: Figure, beneath: Heights) -> Finding | None:
+def find_tilt(performance: Performance, figure: Figure, beneath: Heights) -> Finding | None:
     """Feet that stand on a plane that slopes by a few degrees, or else, as short stances may leave
-    it open, on a floor that rises, or sinks, at one speed.
+    it open, on a floor that rises, or sinks, at one speed. Falls tell a ramp, or a kerb, from a
+    camera that was not level, and how far that was off where feet stand on one spot.
 
-    recording: in its right size and time. beneath: ground that is known, which may slope itself.
+    performance: in its right size and time. beneath: ground that is known, which may slope itself.
     """
-    stances = list(_stances(recording, figure, beneath))
-    if len(stances) < FEWEST:
-        return None
+    stances = list(_stances(performance.recording, figure, beneath))
+    plumb = find_plumb(performance)
+    found = _by_stances(stances, plumb, performance) if len(stances) >= FEWEST else None
+    if found is None and plumb is not None:
+        return _by_falls(stances, plumb)
+    return found
+
+
+def _by_stances(
+    stances: list[_Stance], plumb: Plumb | None, performance: Performance
+) -> Finding | None:
+    """What the places of three or more tell; falls may deny it. So may of a steep floor, if there
+    are none, how the body leans."""
     plane = _Plane.through(stances)
-    x, y = (degrees(atan(each)) for each in plane.slope.tolist())
-    angle = degrees(atan(float(np.hypot(*plane.slope))))
+    if plumb is None and plane.angle > MOST:
+        plumb = _lean(stances, performance)
+    if plumb is not None:
+        if np.linalg.norm(plumb.slope) < np.linalg.norm(plumb.slope - plane.slope):
+            return None  # nearer to level
+        plane = _Plane.through(stances, plumb)
     off = plane.off(stances)
-    if not LEAST < angle < MOST or off > OFF or not plane.explains(stances):
+    if not LEAST < plane.angle < STEEPEST or off > OFF or not plane.explains(stances):
         return None
     rise, risen_off = _rise(stances, plane.apart)
-    tilted, risen = Repairs(tilt=(x, y)), Repairs(rise=rise)
+    tilted, risen = plane.level, Repairs(rise=rise)
     if off < SURELY_RISES * risen_off:
         other = risen if risen_off < min(DOUBTFUL * off, LEFT * _uneven(stances)) else None
-        return Finding(FindingKind.TILTED, angle, "°", remedy=tilted, alternative=other)
+        return Finding(FindingKind.TILTED, plane.angle, "°", remedy=tilted, alternative=other)
     if off < DOUBTFUL * risen_off:
         return Finding(FindingKind.RISING, rise, "m/s", remedy=risen, alternative=tilted)
     return None
+
+
+def _by_falls(stances: list[_Stance], plumb: Plumb) -> Finding | None:
+    """What falls tell, where no level floor denies it; on boxes they tell it alone."""
+    surely = float(np.linalg.norm(plumb.slope)) > SURELY_TURNED * plumb.unsure
+    if not surely or not (plumb.falls >= SEVERAL or _stand_still(stances)):
+        return None
+    plane, level = _Plane.through(stances, plumb), _Plane(np.zeros(2), 0.0, 0.0)
+    if plane.off(stances) > OFF:
+        if level.off(stances) < OFF:
+            return None
+        plane = replace(plane, slope=plumb.slope)
+    if plane.angle > STEEPEST:
+        return None
+    return Finding(FindingKind.TILTED, plane.angle, "°", remedy=plane.level)
+
+
+def _lean(stances: list[_Stance], performance: Performance) -> Plumb:
+    """Where down is, if the centre of mass is in the mean above the balls that stand."""
+    above = []
+    for stance in stances:
+        first = int(np.searchsorted(performance.times, stance.times[0]))
+        above.append(performance.com[first : first + len(stance.times)] - stance.places)
+    mean = np.concatenate(above).mean(axis=0)
+    return Plumb(-mean[:2] / mean[2], LEANING, falls=0)
+
+
+def _stand_still(stances: list[_Stance]) -> bool:
+    """Whether balls keep their places, by lines through stances that are long enough: half of the
+    time or more, where there is any."""
+    long = [stance for stance in stances if np.ptp(stance.times) > LEAST_STANDING]
+    seconds = np.array([np.ptp(stance.times) for stance in long])
+    speeds = np.array([stance.speed for stance in long])
+    return bool(seconds[speeds < STILL].sum() >= 0.5 * seconds.sum() > 0.0)
 
 
 @dataclass(frozen=True)
@@ -79,6 +135,12 @@ class _Stance:
     def place(self) -> FloatArray:
         """(3,) m."""
         return np.asarray(np.median(self.places, axis=0))
+
+    @property
+    def speed(self) -> float:
+        """M/s along the floor, of a line through it."""
+        since = self.times - self.times.mean()
+        return float(np.linalg.norm(since @ self.places[:, :2]) / (since @ since))
 
 
 def _stances(recording: Recording, figure: Figure, beneath: Heights) -> Iterator[_Stance]:
@@ -112,15 +174,30 @@ class _Plane:
     spent: float
 
     @staticmethod
-    def through(stances: list[_Stance]) -> _Plane:
-        """Least squares, with what is likely of a slope where the places tell little."""
+    def through(stances: list[_Stance], plumb: Plumb | None = None) -> _Plane:
+        """Least squares, with what is likely of a slope where the places tell little, or what falls
+        tell of it."""
         places = np.stack([stance.place for stance in stances])
         known = np.column_stack([places[:, :2], [stance.side for stance in stances]])
         known = known - known.mean(axis=0)
-        likely = np.diag((HEIGHT / np.array([SLOPE, SLOPE, APART])) ** 2)
-        inverse = np.linalg.inv(known.T @ known + likely)
-        found = inverse @ known.T @ places[:, 2]
+        likely, slope = np.zeros(3), SLOPE
+        if plumb is not None:
+            likely[:2], slope = plumb.slope, plumb.unsure
+        surely = np.diag((HEIGHT / np.array([slope, slope, APART])) ** 2)
+        inverse = np.linalg.inv(known.T @ known + surely)
+        found = inverse @ (known.T @ places[:, 2] + surely @ likely)
         return _Plane(found[:2], float(found[2]), float(np.trace(inverse @ known.T @ known)))
+
+    @property
+    def angle(self) -> float:
+        """°, of the steepest way up."""
+        return degrees(atan(float(np.hypot(*self.slope))))
+
+    @property
+    def level(self) -> Repairs:
+        """With which it is."""
+        x, y = (degrees(atan(each)) for each in self.slope.tolist())
+        return Repairs(tilt=(x, y))
 
     def explains(self, stances: list[_Stance]) -> bool:
         """Whether it is why heights differ, and not that feet are on things of their own. By what

@@ -5,9 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hangtime.devtools.doctor.damages.whole_body import rising, tilted
+from hangtime.devtools.doctor.damages.whole_body import rising, swaying, tilted
 from hangtime.devtools.doctor.measure import apart
+from hangtime.solver.analysis.performance import perform
 from hangtime.solver.arrays import FloatArray
+from hangtime.solver.body.character import build_character
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.examination.ground import beneath
@@ -21,17 +23,21 @@ from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.doctored import jump
 
 RUN, HOPS = "run_2.bvh", "131_03_hop.bvh"
+FLIGHT = (0.34,), 0.43  # of the jump's way: where it begins, and its length
 
 
 def told(recording: Recording) -> Finding | None:
-    return find_tilt(recording, figure_of(recording), beneath(recording, ()))
+    performance = perform(recording, build_character(recording))
+    return find_tilt(performance, figure_of(recording), beneath(recording, ()))
 
 
-def climbed(recording: Recording, metres: float, at: Sequence[float]) -> Recording:
-    """Steps of such a height in its way, at these shares of it."""
+def climbed(
+    recording: Recording, metres: float, at: Sequence[float], over: float = 0.05
+) -> Recording:
+    """Steps of such a height in its way, from these shares of it on, each over such a share."""
     hips = recording.heads[:, figure_of(recording).bones[0], :2]
     way = (hips - hips[0]) @ (hips[-1] - hips[0]) / np.sum((hips[-1] - hips[0]) ** 2)
-    ramps: list[FloatArray] = [np.clip((way - share) / 0.05, 0.0, 1.0) for share in at]
+    ramps: list[FloatArray] = [np.clip((way - share) / over, 0.0, 1.0) for share in at]
     up = metres * np.sum(ramps, axis=0)[:, None, None] * np.array([0.0, 0.0, 1.0])
     return replace(recording, heads=recording.heads + up)
 
@@ -45,6 +51,48 @@ def test_a_slope_is_told_and_turned_level(recorded: Recording, angle: float) -> 
     assert (found.kind, found.remedy is None) == (FindingKind.TILTED, False)
     assert found.amount == pytest.approx(abs(angle), abs=0.3)
     assert apart(repaired(damaged.recording, found.remedy or Repairs()), damaged.original) < 0.01
+
+
+@pytest.mark.parametrize("angle", [-8.0, 3.0, 25.0])
+@pytest.mark.parametrize("clip", ["high_jump.bvh", "hops_in_place.bvh"])
+def test_on_one_spot_falls_tell_the_slope(clip: str, angle: float) -> None:
+    damaged = tilted(angle).of(load_recording(clip))
+    found = told(damaged.recording)
+    assert found is not None
+    assert found.amount == pytest.approx(abs(angle), abs=0.5)
+    assert apart(repaired(damaged.recording, found.remedy or Repairs()), damaged.original) < 0.01
+
+
+@pytest.mark.parametrize("recorded", [jump(), load_recording(RUN)])
+def test_a_camera_may_be_far_off_the_level(recorded: Recording) -> None:
+    """Falls tell it of the jump; of the run, how the body leans."""
+    damaged = tilted(20.0).of(recorded)
+    diagnosis = diagnose(damaged.recording)
+    assert [finding.kind for finding in diagnosis.findings] == [FindingKind.TILTED]
+    assert apart(repaired(damaged.recording, diagnosis.repairs), damaged.original) < 0.01
+
+
+def test_who_jumps_on_a_box_falls_as_far_off_the_level() -> None:
+    damaged = tilted(8.0).of(climbed(jump(), 0.3, *FLIGHT))
+    found = told(damaged.recording)
+    assert found is not None
+    assert found.amount == pytest.approx(8.0, abs=0.5)
+
+
+@pytest.mark.parametrize(
+    ("recorded", "slope"), [(jump(), 0.05), (load_recording(RUN), 0.15), (jump(), 0.3)]
+)
+def test_on_a_true_ramp_nobody_falls_or_leans_along_it(recorded: Recording, slope: float) -> None:
+    along = recorded.heads[:, figure_of(recorded).bones[0], :2]
+    way = (along[-1] - along[0]) / np.linalg.norm(along[-1] - along[0])
+    up = slope * (along @ way)[:, None, None] * np.array([0.0, 0.0, 1.0])
+    assert told(replace(recorded, heads=recorded.heads + up)) is None
+
+
+@pytest.mark.parametrize("clip", ["high_jump.bvh", "forward_jump_116cm.bvh", "hops_in_place.bvh"])
+def test_who_sways_is_on_no_slope(clip: str) -> None:
+    """Its falls are bent by 2.6°."""
+    assert told(swaying(0.1, 3.0).of(load_recording(clip)).recording) is None
 
 
 @pytest.mark.parametrize("angle", [-1.5, 1.5])
@@ -65,6 +113,12 @@ def test_a_kerb_and_a_box_are_no_slope(name: str, metres: float) -> None:
 def test_of_few_stances_it_counts_how_many_a_plane_is_near_anyway(metres: float) -> None:
     """A run of four, the first below a kerb: some plane leaves a third of how they differ."""
     assert told(climbed(load_recording(RUN), metres, (0.2,))) is None
+
+
+@pytest.mark.parametrize("metres", [-0.05, 0.03, 0.05, 0.08])
+def test_a_mat_to_jump_on_is_no_slope(metres: float) -> None:
+    """Two places are on some plane, but the fall is not along it."""
+    assert told(climbed(jump(), metres, *FLIGHT)) is None
 
 
 def test_a_box_to_jump_on_and_stairs_are_no_slope() -> None:

@@ -1,0 +1,97 @@
+"""Which way is down: whoever is in the air falls that way, whatever the floor below slopes like.
+
+A centre of mass in flight has the acceleration of gravity, also in its direction: 0.4 s of a flight
+tell the vertical to half a degree. What a flight is must not hang on a level floor then: it is
+where the acceleration stays as large and goes one way.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, radians, sin
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+
+from ..analysis.performance import Performance
+from ..arrays import FloatArray
+from ..data.constants import STANDARD_GRAVITY
+from ..numerics.runs import runs
+
+WINDOW = 0.1  # s, of the parabolas by which acceleration is told from frame to frame
+SHORTEST = 0.3  # s; of shorter falls too much is in touch
+SIZES = (0.8, 1.25)  # of gravity, that of a fall by such a parabola
+LEANING = cos(radians(45.0))  # a figure has been stood up by then: the next axis is no nearer
+ONE_WAY = sin(radians(25.0))  # of a fall's mean acceleration, that any of it misses it by
+# Of the slope, one standard deviation, by masses of limbs that are not known: as good as alike in
+# all falls of a figure. 0.4 s tell it to 0.4°, and shorter ones as velocities' slopes do.
+OFF, OFF_AT = radians(0.4), 0.4  # s
+ALIKE = 3.0  # times what a fall is unsure by, that it may miss the others; what sways does by more
+
+
+@dataclass(frozen=True)
+class Plumb:
+    """slope: (2,) that a floor has which is level, upwards along x and y. unsure: of each of the
+    two, one standard deviation. falls: how many tell it."""
+
+    slope: FloatArray
+    unsure: float
+    falls: int
+
+
+def find_plumb(performance: Performance) -> Plumb | None:
+    """What the falls of a recording tell together; None where there are none, or they differ.
+
+    performance: in its right size and time.
+    """
+    found = [_fall(performance, frames) for frames in _falls(performance)]
+    if not found:
+        return None
+    slopes = np.array([each.slope for each in found])
+    unsure = np.array([each.unsure for each in found])
+    weights = unsure**-2
+    mean = np.asarray(weights @ slopes / weights.sum())
+    if (np.linalg.norm(slopes - mean, axis=1) > ALIKE * unsure).any():
+        return None
+    return Plumb(mean, max(float(weights.sum() ** -0.5), OFF), len(found))
+
+
+def _falls(performance: Performance) -> list[slice]:
+    """Frames of each."""
+    rate, com = performance.recording.rate, performance.com
+    half = max(round(0.5 * WINDOW * rate), 2)
+    if len(com) <= 2 * half:
+        return []
+    since = np.arange(-half, half + 1) / rate
+    second = 2.0 * np.linalg.pinv(np.vander(since, 3))[0]
+    acceleration = sliding_window_view(com, len(since), axis=0) @ second
+    size = np.linalg.norm(acceleration, axis=1)
+    low, high = (each * STANDARD_GRAVITY for each in SIZES)
+    falls = (size > low) & (size < high) & (-acceleration[:, 2] > LEANING * size)
+    found = []
+    for first, last in runs(falls):
+        within = acceleration[first : last + 1]
+        mean = within.mean(axis=0)
+        near = np.linalg.norm(within - mean, axis=1) < ONE_WAY * np.linalg.norm(mean)
+        for a, b in runs(near):
+            # A parabola that is half in touch is none: the inner halves of the outer ones count.
+            frames = slice(first + a + half // 2, first + b + 2 * half - half // 2 + 1)
+            if frames.stop - frames.start > SHORTEST * rate:
+                found.append(frames)
+    return found
+
+
+def _fall(performance: Performance, frames: slice) -> Plumb:
+    """What one of at least four frames tells: by the slope of velocities, whose errors are
+    independent, as those of places are not."""
+    times, com = performance.times[frames], performance.com[frames]
+    velocity = np.diff(com, axis=0) / np.diff(times)[:, None]
+    middles = 0.5 * (times[1:] + times[:-1])
+    since = middles - middles.mean()
+    spread = float(since @ since)
+    acceleration = since @ velocity / spread
+    left = velocity - velocity.mean(axis=0) - np.outer(since, acceleration)
+    deviation = np.sqrt(np.mean(left[:, :2] ** 2) * len(since) / (len(since) - 2) / spread)
+    off = OFF * (OFF_AT / float(np.ptp(times))) ** 1.5
+    unsure = float(np.hypot(off, deviation / STANDARD_GRAVITY))
+    return Plumb(acceleration[:2] / -acceleration[2], unsure, falls=1)
