@@ -11,6 +11,7 @@ from ..body.anatomy import Part, Side
 from ..body.character import Character, body_rotations
 from ..body.kinematics import BodyPoint
 from ..contacts.contact_detection import detect_contacts
+from ..contacts.flat_soles import lying
 from ..contacts.known_contacts import Clock, with_known
 from ..data.contacts import (
     ContactPoint,
@@ -23,7 +24,7 @@ from ..data.contacts import (
 from ..data.recording import Recording, Skin
 from ..data.scene import SceneObject
 from ..numerics.interpolation import interpolate
-from ..scene.support import StandingGround, boxes_beneath, level, on_boxes
+from ..scene.support import LEAST_HEIGHT, StandingGround, boxes_beneath, level, on_boxes
 from ..unseen.free_fall import clear_falls, unseen_support, without_falls
 from .skin import skin_of_bodies
 from .soles import FootTracks, floor_height, foot_points
@@ -169,8 +170,12 @@ def leans(performance: Performance, floor_m: float) -> BoolArray:
 
 def low_feet(points: Mapping[str, ContactPoint], floor_m: float) -> BoolArray:
     """(T,) whether a point of a foot is as low as one that stands, however it moves."""
-    feet = [point for point in points.values() if point.kind.is_of_foot]
-    low = [point.track[:, 2] - floor_m < point.max_height for point in feet]
+    feet = {name: point for name, point in points.items() if point.kind.is_of_foot}
+    above = {name: point.track[:, 2] - floor_m for name, point in feet.items()}
+    low = [
+        (above[name] < feet[name].max_height) & ~(flat >= LEAST_HEIGHT)
+        for name, flat in lying(above).items()
+    ]
     return np.asarray(np.any(low, axis=0))
 
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..data.contacts import (
     Contact,
     ContactPoint,
@@ -19,8 +19,9 @@ from ..data.contacts import (
 from ..numerics.interpolation import interpolate
 from ..numerics.runs import runs
 from ..scene.carrier import Carrier
-from ..scene.support import Heights, level
+from ..scene.support import LEAST_HEIGHT, Heights, level
 from ..unseen.free_fall import is_free_fall, off_gravity, unseen_support
+from .flat_soles import lies_elsewhere, lying
 from .force_timing import timed_by_forces
 from .noisy_touches import joined_over_noise
 from .point_movement import MAX_SLIDE, STEP, PointMovement, even_clock, point_movement
@@ -63,11 +64,7 @@ def detect_contacts(
     duration = float(times[-1]) if duration_s is None else duration_s
     clock = even_clock(float(times[0]), float(times[-1]))
     movements = {name: point_movement(times, p, clock) for name, p in points.items()}
-    touches = [
-        touch
-        for name, point in points.items()
-        for touch in _touches(clock, name, point, movements[name], ground or level(floor_m))
-    ]
+    touches = list(_touches(clock, points, movements, ground or level(floor_m)))
     feet = {name: movements[name] for name, p in points.items() if p.kind.is_of_foot}
     touches = joined_over_noise(clock, touches, feet, ground or level(floor_m))
     for carrier in carriers:
@@ -89,11 +86,26 @@ def detect_contacts(
 
 
 def _touches(
-    clock: FloatArray, name: str, point: ContactPoint, movement: PointMovement, ground: Heights
+    clock: FloatArray,
+    points: Mapping[str, ContactPoint],
+    movements: Mapping[str, PointMovement],
+    ground: Heights,
 ) -> Iterable[Contact]:
-    """Contacts of one point, in order and disjoint. clock: (N,) s, of the movement."""
+    """Contacts, each point's in order and disjoint. clock: (N,) s, of the movements."""
+    above = {name: m.track[:, 2] - ground(clock, m.track) for name, m in movements.items()}
+    for name, flat in lying(above).items():
+        low = (above[name] < points[name].max_height) | (flat < LEAST_HEIGHT)
+        for contact in _touches_of(clock, name, points[name], movements[name], low):
+            during = (clock >= contact.start) & (clock <= contact.end)
+            if not lies_elsewhere(flat[during]):
+                yield contact
+
+
+def _touches_of(
+    clock: FloatArray, name: str, point: ContactPoint, movement: PointMovement, low: BoolArray
+) -> Iterable[Contact]:
+    """Contacts of one point. low: (N,) whether it is low enough."""
     thresholds = point.kind.value
-    low = movement.track[:, 2] < ground(clock, movement.track) + point.max_height
     at_rest = low & (np.linalg.norm(movement.velocity, axis=1) < thresholds.max_speed)
     candidates = [
         candidate
@@ -116,11 +128,10 @@ def _carried(
     times: FloatArray, clock: FloatArray, points: Mapping[str, ContactPoint], carrier: Carrier
 ) -> Iterable[Contact]:
     """Contacts with ground that moves: of points that are low and slow as seen from it."""
-    for name, point in points.items():
-        seen = carrier.seen_point(times, point)
-        movement = point_movement(times, seen, clock)
-        for contact in _touches(clock, name, seen, movement, carrier.heights):
-            yield replace(contact, on=carrier.name)
+    seen = {name: carrier.seen_point(times, point) for name, point in points.items()}
+    movements = {name: point_movement(times, point, clock) for name, point in seen.items()}
+    for contact in _touches(clock, seen, movements, carrier.heights):
+        yield replace(contact, on=carrier.name)
 
 
 def _on_one_thing(contacts: Iterable[Contact]) -> list[Contact]:

@@ -38,7 +38,7 @@ def timed_by_forces(
     """
     timed = []
     for touch in touches:
-        ends = (touch.point, _other_end(touch.point))
+        ends = (touch.point, other_end(touch.point))
         foot = [t for t in touches if t.point in ends and t is not touch]
         others = [t for t in touches if t.point not in ends]
         start, end = touch.start, touch.end
@@ -55,7 +55,7 @@ def timed_by_forces(
     return timed
 
 
-def _other_end(point: str) -> str:
+def other_end(point: str) -> str:
     """Name of the point at the other end of the same foot; for hands, of nothing."""
     side, _, end = point.rpartition(" ")
     return f"{side} {OTHER_END.get(end)}"

@@ -1,9 +1,11 @@
 """A jump, what its poses tell, and ways in which it is spoilt."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache, partial
 
 import numpy as np
+from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.character import Character, build_character
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.examination.repair import repaired
@@ -23,6 +25,7 @@ from hangtime.solver.doctor.repairs import Repairs
 from hangtime.tests.helpers.clips import JUMP, load_recording
 
 STANDING = 73, 325  # frames, from standing to standing
+FLIGHT = 0.34, 0.43  # of its way: where that begins, and its length
 
 
 @cache
@@ -71,3 +74,20 @@ def moved_from(*at: int) -> Recording:
     for index in at:
         heads[index:] += [0.24, 0.18, 0.0]
     return replace(jump(), heads=heads)
+
+
+def climbed(
+    recording: Recording, metres: float, at: Sequence[float], over: float = 0.05
+) -> Recording:
+    """Steps of such a height in its way, from these shares of it on, each over such a share."""
+    hips = recording.heads[:, figure_of(recording).bones[0], :2]
+    way = (hips - hips[0]) @ (hips[-1] - hips[0]) / np.sum((hips[-1] - hips[0]) ** 2)
+    ramps: list[FloatArray] = [np.clip((way - share) / over, 0.0, 1.0) for share in at]
+    up = metres * np.sum(ramps, axis=0)[:, None, None] * np.array([0.0, 0.0, 1.0])
+    return replace(recording, heads=recording.heads + up)
+
+
+def onto(metres: float) -> Recording:
+    """The jump, onto something of such a height; from something of it, where that is below 0."""
+    start, length = FLIGHT
+    return climbed(jump(), metres, [start], length)

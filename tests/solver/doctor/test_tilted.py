@@ -1,6 +1,5 @@
 """A floor that slopes, as of a camera that was not level."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +7,6 @@ import pytest
 from hangtime.devtools.doctor.damages.whole_body import rising, swaying, tilted
 from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.analysis.performance import perform
-from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.character import build_character
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.examination.diagnose import diagnose
@@ -20,26 +18,14 @@ from hangtime.solver.doctor.repairs import Repairs, UpAxis
 from hangtime.solver.doctor.stance.tilted import find_tilt
 from hangtime.solver.doctor.upright import turn_upright
 from hangtime.tests.helpers.clips import load_recording
-from hangtime.tests.helpers.doctored import jump
+from hangtime.tests.helpers.doctored import climbed, jump, onto
 
 RUN, HOPS = "run_2.bvh", "131_03_hop.bvh"
-FLIGHT = (0.34,), 0.43  # of the jump's way: where it begins, and its length
 
 
 def told(recording: Recording) -> Finding | None:
     performance = perform(recording, build_character(recording))
     return find_tilt(performance, figure_of(recording), beneath(recording, ()))
-
-
-def climbed(
-    recording: Recording, metres: float, at: Sequence[float], over: float = 0.05
-) -> Recording:
-    """Steps of such a height in its way, from these shares of it on, each over such a share."""
-    hips = recording.heads[:, figure_of(recording).bones[0], :2]
-    way = (hips - hips[0]) @ (hips[-1] - hips[0]) / np.sum((hips[-1] - hips[0]) ** 2)
-    ramps: list[FloatArray] = [np.clip((way - share) / over, 0.0, 1.0) for share in at]
-    up = metres * np.sum(ramps, axis=0)[:, None, None] * np.array([0.0, 0.0, 1.0])
-    return replace(recording, heads=recording.heads + up)
 
 
 @pytest.mark.parametrize("angle", [-3.0, -1.5, 1.5, 3.0])
@@ -73,7 +59,7 @@ def test_a_camera_may_be_far_off_the_level(recorded: Recording) -> None:
 
 
 def test_who_jumps_on_a_box_falls_as_far_off_the_level() -> None:
-    damaged = tilted(8.0).of(climbed(jump(), 0.3, *FLIGHT))
+    damaged = tilted(8.0).of(onto(0.3))
     found = told(damaged.recording)
     assert found is not None
     assert found.amount == pytest.approx(8.0, abs=0.5)
@@ -118,7 +104,7 @@ def test_of_few_stances_it_counts_how_many_a_plane_is_near_anyway(metres: float)
 @pytest.mark.parametrize("metres", [-0.05, 0.03, 0.05, 0.08])
 def test_a_mat_to_jump_on_is_no_slope(metres: float) -> None:
     """Two places are on some plane, but the fall is not along it."""
-    assert told(climbed(jump(), metres, *FLIGHT)) is None
+    assert told(onto(metres)) is None
 
 
 def test_a_box_to_jump_on_and_stairs_are_no_slope() -> None:

@@ -1,0 +1,28 @@
+"""A foot that stands flat does so with all of its sole, on the floor or on something else."""
+
+from hangtime.solver.analysis.performance import find_contacts, perform
+from hangtime.solver.body.character import build_character
+from hangtime.solver.data.contacts import ContactSchedule
+from hangtime.tests.helpers.doctored import onto
+
+
+def found(metres: float) -> ContactSchedule:
+    recording = onto(metres)
+    return find_contacts(perform(recording, build_character(recording)))
+
+
+def test_where_the_floor_is_not_level_heels_stand_too() -> None:
+    """They did not, 3 cm up, and who landed so stood on the toes."""
+    schedule = found(0.03)
+    landed = {contact.point for contact in schedule.contacts if contact.start > 1.0}
+    assert landed == {"Left heel", "Left toe", "Right heel", "Right toe"}
+    assert schedule.unseen == ()
+
+
+def test_on_a_mat_no_foot_is_half_on_the_floor() -> None:
+    """Toes were, up to 5 cm: one of four points, and the fit was 16 cm off."""
+    onto_it, off_it = found(0.05), found(-0.05)
+    assert all(contact.end < 1.0 for contact in onto_it.contacts)
+    assert all(contact.start > 1.0 for contact in off_it.contacts)
+    assert [gap.end for gap in onto_it.unseen] == [onto_it.duration]
+    assert [gap.start for gap in off_it.unseen] == [0.0]
