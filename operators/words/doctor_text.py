@@ -87,7 +87,6 @@ ADVICE = {
     FindingKind.JUMP: " Choose frames on one side of it.",
     FindingKind.LEAP: " Choose frames without it.",
     FindingKind.IN_PLACE: " Export the recording again without “In Place”.",
-    FindingKind.SINKING: " Raise the hips there, by the depth, or choose frames without it.",
     FindingKind.RETIMED: " Give it its own speed again, or choose frames without it.",
     FindingKind.LEVEL_HIPS: " Export the recording again with the hips' height.",
 }
@@ -115,6 +114,7 @@ REMEDIES = {
     FindingKind.SLIDING: "Hold Still",
     FindingKind.IN_PLACE: "Give the Way Back",
     FindingKind.FLOATING: "Hold to the Ground",
+    FindingKind.SINKING: "Lift Out",
 }
 REPAIR = "Repair"
 

@@ -35,6 +35,7 @@ class Mend(Enum):
     BONE_LENGTHS = "bone lengths"
     NOISE = "noise"
     FLOATING = "floating"
+    SINKING = "sinking"
 
 
 class OffsetAxes(Enum):

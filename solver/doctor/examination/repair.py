@@ -27,8 +27,12 @@ from ..local_poses import LocalPoses
 from ..noise import smoothed
 from ..repairs import MissingFrames, Repairs, check_missing
 from ..stance.floating import held_to_the_ground
+from ..stance.sinking import lifted_out
 from ..stretch import Span
 from ..upright import turn_upright
+
+GROUNDING = {Mend.FLOATING, Mend.SINKING}
+"""What is mended in how the body stands, and not in its poses."""
 
 
 def repaired(
@@ -63,7 +67,7 @@ def as_asked(recording: Recording, problem: MotionProblem) -> Recording:
 
 def floated(recording: Recording, problem: MotionProblem, frame: float) -> tuple[float, ...]:
     """(3,) m, how far the recording is at a frame from where it is held to the ground."""
-    if Mend.FLOATING not in problem.mend:
+    if not GROUNDING & set(problem.mend):
         return 0.0, 0.0, 0.0
     before = _without_drift_as_asked(recording, problem)
     after = grounded(before, problem.mend, problem.bones)
@@ -100,11 +104,11 @@ def _without_rest_poses(recording: Recording, asked: tuple[float, float] | None)
 def grounded(
     recording: Recording, mend: Collection[Mend], chosen: Mapping[str, str] | None
 ) -> Recording:
-    """Held to the ground, where that is among what is to be mended. recording: in its right size
-    and time, and without drift. Raises MissingPart."""
-    if Mend.FLOATING not in mend:
-        return recording
-    return held_to_the_ground(recording, figure_of(recording, chosen))
+    """Held to the ground, and lifted out of it, where these are among what is to be mended.
+    recording: in its right size and time, and without drift. Raises MissingPart."""
+    if Mend.FLOATING in mend:
+        recording = held_to_the_ground(recording, figure_of(recording, chosen))
+    return lifted_out(recording, chosen) if Mend.SINKING in mend else recording
 
 
 def _without_drift(
@@ -215,7 +219,7 @@ def mended(
     """With its poses mended; frames, clock and lengths stay, and so does how it floats; a single
     pose as it is. Raises MissingPart."""
     wanted = repairs.mend if len(recording.frames) > 1 else ()
-    poses = [mend for mend in Mend if mend in wanted and mend is not Mend.FLOATING]
+    poses = [mend for mend in Mend if mend in wanted and mend not in GROUNDING]
     figure = figure_of(recording, chosen) if poses else None
     for mend in poses:
         assert figure is not None

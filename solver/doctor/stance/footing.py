@@ -15,13 +15,13 @@ from ...arrays import FloatArray
 from ...contacts.noisy_touches import MAX_BREAK
 from ...data.contacts import ContactSchedule, Interval
 from ...data.recording import Recording
-from ...numerics.runs import runs
 from ...scene.support import boxes_beneath
 from ..falls import Spans
 from ..figure import Figure
 from ..finding import Finding, FindingKind
 from ..repairs import Repairs
 from .flat_feet import FLAT_SPEED, LOW, STANDING_SPEED_UP, FlatSamples, agreed
+from .sinking import find_sinking
 from .to_and_fro import go_against
 from .trembling_feet import drift_of_stances
 
@@ -49,7 +49,6 @@ LEAST_LEVEL = 0.3  # s of feet that stand flat, of which so much can be told
 ALIKE_RISE = 0.5  # of the rise, likewise
 STEADY = 0.5  # of the speed, by which those of half a clip may differ
 LEVELLED = 0.5  # of how much their heights differ, that is left without the rise
-SUNK = 0.06  # m below the floor; honest soles go 5 cm below the lowest of uneven ones
 FLICKER_PLACE = 0.03  # m
 FLICKERS = 3
 
@@ -66,7 +65,7 @@ def find_footing(
     schedule = find_contacts(performance) if schedule is None else schedule
     found = [
         _floor(performance, schedule),
-        _sinking(performance),
+        find_sinking(performance),
         _flicker(performance, schedule),
     ]
     skids = skids_in(performance, schedule.unseen)
@@ -122,23 +121,6 @@ def _rise_to_floor(performance: Performance) -> float | None:
     told = len(stances) >= FEWEST_STANCES or max(stances) > LEAST_LEVEL
     steady = abs(rise) > RISE and np.std(heights - rise * times) < STRAIGHT * np.std(heights)
     return rise if told and steady else None
-
-
-def _sinking(performance: Performance) -> Finding | None:
-    """Feet that are for more than a frame deeper than the lowest height on which they stand: a
-    moment of it changes neither the floor nor the spread of heights that tells a floating body."""
-    points, floor = contact_points(performance)
-    feet = {name: p for name, p in points.items() if p.kind.is_of_foot}
-    depths = np.stack([floor - point.track[:, 2] for point in feet.values()])
-    places = [(first, last) for first, last in runs(depths.max(axis=0) > SUNK) if first < last]
-    if not places:
-        return None
-    worst = max(places, key=lambda place: depths[:, place[0] : place[1] + 1].max())
-    deepest = depths[:, worst[0] : worst[1] + 1].max(axis=1)
-    frames = performance.recording.frames
-    spans = tuple((float(frames[first]), float(frames[last])) for first, last in places)
-    part = [*feet][int(np.argmax(deepest))]
-    return Finding(FindingKind.SINKING, 100.0 * float(deepest.max()), "cm", spans, part)
 
 
 def find_sliding(performance: Performance, figure: Figure) -> Finding | None:

@@ -318,6 +318,9 @@ def test_feet_below_the_floor_for_a_moment_are_told_with_its_frames(seconds: flo
     inside = (jump().frames >= first) & (jump().frames <= last)
     assert deep[inside].all()
     assert inside[deep].mean() > 0.7
+    lifted = repaired(damaged, found.remedy or Repairs())
+    assert apart(lifted, jump()) < 0.5 * apart(damaged, jump())
+    assert diagnose(lifted).findings == ()
 
 
 @pytest.mark.parametrize("name", ["01_01.amc", "run_2.bvh", "hops_in_place.bvh"])
