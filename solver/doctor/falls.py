@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..analysis.performance import Performance, contact_points, leans
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..data.constants import STANDARD_GRAVITY
 from ..numerics.runs import runs
 from ..scene.fall_rate import usual_rates
@@ -80,10 +80,7 @@ def falls_of(performance: Performance, trusted: Trusted = ALL) -> Falls | None:
 def each_fall(performance: Performance, trusted: Trusted = ALL) -> tuple[FloatArray, Spans]:
     """(N, 2) accelerations downwards, m/s², and durations, s, of those that are trusted and are
     parabolas, and their scene frames."""
-    points, floor = contact_points(performance)
-    feet = [point.track[:, 2] for point in points.values() if point.kind.is_of_foot]
-    height = performance.character.height
-    up = (np.min(feet, axis=0) - floor > CLEAR * height) & ~leans(performance, floor)
+    up, height = in_the_air(performance), performance.character.height
     times, com, frames = performance.times, performance.com[:, 2], performance.recording.frames
     found, spans = [], []
     for first, last in runs(up):
@@ -103,6 +100,14 @@ def each_fall(performance: Performance, trusted: Trusted = ALL) -> tuple[FloatAr
             found.append((fall, seconds))
             spans.append(span)
     return np.array(found).reshape(-1, 2), tuple(spans)
+
+
+def in_the_air(performance: Performance) -> BoolArray:
+    """(T,) whether all points of the feet are up, and nothing else is near the floor."""
+    points, floor = contact_points(performance)
+    feet = [point.track[:, 2] for point in points.values() if point.kind.is_of_foot]
+    clear = np.min(feet, axis=0) - floor > CLEAR * performance.character.height
+    return np.asarray(clear & ~leans(performance, floor))
 
 
 def _agreed(found: FloatArray, spans: Spans) -> Falls | None:

@@ -27,11 +27,12 @@ from ..local_poses import LocalPoses
 from ..noise import smoothed
 from ..repairs import MissingFrames, Repairs, check_missing
 from ..stance.floating import held_to_the_ground
+from ..stance.in_place import with_its_way
 from ..stance.sinking import lifted_out
 from ..stretch import Span
 from ..upright import turn_upright
 
-GROUNDING = {Mend.FLOATING, Mend.SINKING}
+GROUNDING = {Mend.IN_PLACE, Mend.FLOATING, Mend.SINKING}
 """What is mended in how the body stands, and not in its poses."""
 
 
@@ -104,8 +105,11 @@ def _without_rest_poses(recording: Recording, asked: tuple[float, float] | None)
 def grounded(
     recording: Recording, mend: Collection[Mend], chosen: Mapping[str, str] | None
 ) -> Recording:
-    """Held to the ground, and lifted out of it, where these are among what is to be mended.
-    recording: in its right size and time, and without drift. Raises MissingPart."""
+    """With its way along the floor, held to the ground, and lifted out of it, where these are
+    among what is to be mended. recording: in its right size and time, and without drift. Raises
+    MissingPart."""
+    if Mend.IN_PLACE in mend:
+        recording = with_its_way(recording, chosen)
     if Mend.FLOATING in mend:
         recording = held_to_the_ground(recording, figure_of(recording, chosen))
     return lifted_out(recording, chosen) if Mend.SINKING in mend else recording

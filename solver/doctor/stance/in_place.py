@@ -3,12 +3,20 @@ they are above a treadmill's belt: the feet that carry slide backwards below the
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Mapping
+from dataclasses import replace
 
-from ...analysis.performance import Performance, contact_points
+import numpy as np
+from scipy.integrate import cumulative_trapezoid
+
+from ...analysis.performance import Performance, contact_points, perform
 from ...arrays import BoolArray, FloatArray
+from ...body.character import build_character
+from ...data.problem import Mend
+from ...data.recording import Recording
 from ...numerics.runs import runs
 from ...scene.belt import belt_speed
+from ..falls import in_the_air
 from ..finding import Finding, FindingKind
 from ..local_poses import spans
 from ..repairs import Repairs
@@ -17,19 +25,20 @@ from .footing import DRIFT, LEAST_STANDING, LowestPoint, standing
 KEPT = 0.005  # m along the way, by which hips that keep their place leave it; nobody's stay so
 KEPT_SHARE = 0.1  # of the way that the feet tell: hips above a belt go to and fro by less
 LEAST_WAY = 0.3  # m that the feet tell
+FEW = 3  # frames in which something stands, before and after a flight
 STEP = 0.2  # s; from one place in which a foot slides to the next, told as one
 
 
 def find_in_place(performance: Performance) -> Finding | None:
     """Feet that go a way while they stand of which the hips go nothing, or, where the feet slide at
-    one steady speed, next to nothing. That speed is the remedy; no other way is known.
+    one steady speed, next to nothing. That speed is the remedy, or else the way of the feet.
 
     performance: as seen from what it stands on, in its right size and time.
     """
     stood = standing(performance)
     if len(stood.times) < LEAST_STANDING:
         return None
-    way = _way_of_the_ground(stood, performance.times)
+    way = _way_of_the_ground(performance, stood)[-1]
     far = float(np.linalg.norm(way))
     if far < LEAST_WAY:
         return None
@@ -40,7 +49,7 @@ def find_in_place(performance: Performance) -> Finding | None:
     if left > max(KEPT, KEPT_SHARE * far if steady else 0.0) or not slides.any():
         return None
     x, y = np.median(stood.velocities[:, :2], axis=0).tolist()
-    remedy = Repairs(drift=(x, y)) if steady else None  # a jump's way is in flight: not told
+    remedy = Repairs(drift=(x, y)) if steady else Repairs(mend=(Mend.IN_PLACE,))
     sliding = np.isin(performance.times, stood.times[slides])
     places = spans(performance.recording, _joined(sliding, performance.recording.rate))
     speed = float(np.median(speeds[slides]))
@@ -56,9 +65,32 @@ def _joined(sliding: BoolArray, rate: float) -> BoolArray:
     return joined
 
 
-def _way_of_the_ground(stood: LowestPoint, times: FloatArray) -> FloatArray:
-    """(2,) m, along the floor, by the velocities of what stands, and between stances by those
-    before and after. times: (T,) s."""
-    velocities = [np.interp(times, stood.times, stood.velocities[:, axis]) for axis in (0, 1)]
-    middles = 0.5 * (np.array(velocities)[:, 1:] + np.array(velocities)[:, :-1])
-    return np.asarray(middles @ np.diff(times))
+def with_its_way(recording: Recording, chosen: Mapping[str, str] | None) -> Recording:
+    """With the way along the floor that keeps what stands in its place. recording: in its right
+    size and time. chosen: bones by parts of the body. Raises MissingPart."""
+    performance = perform(recording, build_character(recording, chosen=chosen))
+    stood = standing(performance)
+    if len(stood.times) < LEAST_STANDING:
+        return recording
+    way = np.pad(_way_of_the_ground(performance, stood), ((0, 0), (0, 1)))
+    return replace(recording, heads=recording.heads - way[:, None])
+
+
+def _way_of_the_ground(performance: Performance, stood: LowestPoint) -> FloatArray:
+    """(T, 2) m, along the floor, by the velocities of what stands. In a flight the body goes on at
+    one velocity, the mean of those before and after, in a run as true as feet tell: a foot still
+    slides forwards as it leaves, and the body is braked as it lands."""
+    times = performance.times
+    moving = np.gradient(performance.com[:, :2], times, axis=0)
+    stands = np.searchsorted(times, stood.times)
+    at, going = times[stands], moving[stands] - stood.velocities[:, :2]
+    for first, last in runs(in_the_air(performance)):
+        before, after = np.searchsorted(stands, [first, last])
+        if 0 < before == after < len(stands):
+            beside = going[max(before - FEW, 0) : before], going[after : after + FEW]
+            steady = 0.5 * (beside[0].mean(axis=0) + beside[1].mean(axis=0))
+            at = np.append(at, times[[first, last]])
+            going = np.vstack([going, steady, steady])
+    order = np.argsort(at, kind="stable")
+    body = [np.interp(times, at[order], going[order, axis]) for axis in (0, 1)]
+    return np.asarray(cumulative_trapezoid(moving - np.transpose(body), times, axis=0, initial=0.0))
