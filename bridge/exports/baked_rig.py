@@ -83,19 +83,29 @@ def _write(
 ) -> None:
     frames = np.arange(take.first, take.last + 1.0)
     rests = [np.array(armature_data(rig).bones[name].matrix_local) for name in skeleton.names]
+    held: list[FloatArray] = []  # (T, 4, 4) each: what the rig has of the poses
     for i, name in enumerate(skeleton.names):
         above, frame = skeleton.parents[i], rests[i]
         if above >= 0:
-            frame = take.poses[:, above] @ np.linalg.solve(rests[above], rests[i])
+            frame = held[above] @ np.linalg.solve(rests[above], rests[i])
         basis = np.linalg.solve(frame, take.poses[:, i])
+        place, turns = basis[:, :3, 3], proper(basis[:, :3, :3])
+        sizes = np.linalg.norm(basis[:, :3, :3], axis=1)
+        held.append(frame @ _basis(place, turns, sizes))
         bone = pose_of(rig).bones[name]
         bone.rotation_mode = "QUATERNION"
-        turned = channels(proper(basis[:, :3, :3]), "QUATERNION")
-        scale = np.linalg.norm(basis[:, :3, :3], axis=1)
-        written = {"location": basis[:, :3, 3], "rotation_quaternion": turned}
-        if np.abs(scale - 1.0).max() > _STILL:
-            written["scale"] = scale
+        written = {"location": place, "rotation_quaternion": channels(turns, "QUATERNION")}
+        if np.abs(sizes - 1.0).max() > _STILL:
+            written["scale"] = sizes
         for channel, values in written.items():
             path = bone.path_from_id(channel)
             fcurves.write_channels(curves, path, frames, values, name)
     write_shapes(rig, curves, frames, take.shapes)
+
+
+def _basis(place: FloatArray, turns: FloatArray, sizes: FloatArray) -> FloatArray:
+    """(T, 4, 4) of what a bone can have. A pose may have shear besides, where a bone does not
+    inherit its parent's sizes in full, as files know no other way; places are kept of it."""
+    found = np.tile(np.eye(4), (len(place), 1, 1))
+    found[:, :3, :3], found[:, :3, 3] = turns * sizes[:, None], place
+    return found

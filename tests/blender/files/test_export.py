@@ -13,7 +13,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 import addon_utils
 from hangtime.bridge.armature import fcurves
-from hangtime.bridge.armature.read import read_recording
+from hangtime.bridge.armature.read import read_recording, record
 from hangtime.bridge.armature.write import side_by_side, write_action
 from hangtime.bridge.exports.engines import ENDINGS
 from hangtime.bridge.exports.export import export_takes
@@ -175,3 +175,23 @@ def test_a_real_jump_survives_writing_and_fbx(tmp_path: Path) -> None:
     columns = [again.index(bone) for bone in moving]
     np.testing.assert_allclose(again.heads[:, columns], adapted.heads, atol=5e-5)
     np.testing.assert_allclose(again.rotations[:, columns], adapted.rotations, atol=2e-4)
+
+
+@pytest.mark.parametrize("form", [FileFormat.FBX, FileFormat.GLTF])
+@pytest.mark.parametrize("inherited", ["FULL", "NONE", "ALIGNED", "AVERAGE"])
+def test_joints_are_in_place_however_bones_inherit_sizes(
+    inherited: str, form: FileFormat, tmp_path: Path
+) -> None:
+    """Squash and stretch of a spine, and what hangs on it turns."""
+    armature, path = animated_rig(), tmp_path / f"squash{ENDINGS[form]}"
+    for bone in armature.data.bones:
+        bone.inherit_scale = inherited
+    spine = armature.pose.bones["spine"]
+    for frame, sizes in ((5, (1.0, 1.0, 1.0)), (12, (0.8, 1.4, 0.9)), (20, (1.0, 1.0, 1.0))):
+        spine.scale = sizes
+        spine.keyframe_insert("scale", frame=frame)
+    shown = record(armature, np.arange(5.0, 21.0))
+    export_takes(armature, [armature.animation_data.action], path, ExportOptions(format=form))
+    again = reimport(path, shown.frames)
+    columns = [again.index(bone.name) for bone in shown.bones]
+    np.testing.assert_allclose(again.heads[:, columns], shown.heads, atol=1e-4)
