@@ -69,7 +69,7 @@ def found_companions(
     places = {name: world[:, poses.bones.index(name), :3, 3] for name in (*names, bodies[0])}
     over_pelvis, over_any = _above(armature, bodies[:1]), _above(armature, bodies)
     roots = [name for name in names if name in over_pelvis]
-    root = next((name for name in roots if _travels(places[name], places[bodies[0]])), None)
+    root = next((name for name in roots if travels(places[name], places[bodies[0]])), None)
     followers = [
         (name, body)
         for name in names
@@ -126,7 +126,7 @@ def _frames(curves: fcurves.CurveHolder) -> FloatArray:
     return np.asarray(np.linspace(first, last, count).round())
 
 
-def _travels(root: FloatArray, pelvis: FloatArray) -> bool:
+def travels(root: FloatArray, pelvis: FloatArray) -> bool:
     """Whether a root travels over the floor, and the pelvis with it; places (T, 3), m."""
     way = _extent(root[:, :2])
     return way > _TRAVELS and _extent((pelvis - root)[:, :2]) < _BESIDE * way

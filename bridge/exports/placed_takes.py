@@ -13,12 +13,14 @@ from ...solver.arrays import FloatArray
 from ..accessors import armature_data, assigned_action, current_scene, present
 from ..action_slots import span_of
 from ..armature import fcurves
-from ..armature.poses import Poses, sample
+from ..armature.poses import Poses, metres_per_unit, sample
+from ..companions.found import travels
 from ..companions.root_motion import way, without_turns
 from ..recipe.export import ExportOptions
 from ..rows.choices import FileFormat, RootMotion
 from .baked_rig import BakedTake
 from .engines import CONVENTIONS, format_of
+from .root_place import with_root
 from .shapes import sample_shapes
 from .skeleton import Outline, Skeleton, outline, scale_of, skeleton
 
@@ -67,16 +69,19 @@ def place_takes(
     made = skeleton(armature, found, from_armature)
     baked = []
     for take, (performed, shapes) in zip(takes, performed_takes, strict=True):
-        path = None
+        placed = _placed(performed, found, made, space)
         if pelvis is not None and options.root is not RootMotion.AS_IT_IS:
             rest = space.at_rest @ np.array(armature_data(armature).bones[pelvis].matrix_local)
             hips = performed.matrices[:, performed.bones.index(pelvis)]
             path = way(performed.object_to_world @ hips, rest, steady=take.use_cyclic)
-            if not carries:
-                path = without_turns(path, rest)
+            if carries:
+                placed = _carried(placed, found, made, pelvis, _in_file(path, space))
+            else:
+                rests = not _root_travels(performed, found, pelvis)
+                path = _in_file(without_turns(path, rest), space)
+                placed = _left_out(placed, found, made, pelvis, path, root_rests=rests)
         name = _called(take.name, convention.loop if take.use_cyclic else "")
         first = frames_of(take)[0] if keeps_frames else 0
-        placed = _placed(performed, found, made, space, path, carries)
         baked.append(BakedTake(name, first, placed, shapes))
     return PlacedTakes(made, tuple(baked), space.placed, from_armature)
 
@@ -95,29 +100,58 @@ def outline_for(armature: bpy.types.Object, options: ExportOptions, pelvis: str 
     )
 
 
-def _placed(
-    performed: Poses,
-    found: Outline,
-    made: Skeleton,
-    space: _Space,
-    path: FloatArray | None,
-    carries: bool,
-) -> FloatArray:
-    """(T, B, 4, 4) poses in the file. path: (T, 4, 4) that the root bone carries or, where it
-    does not, that is left out."""
+def _placed(performed: Poses, found: Outline, made: Skeleton, space: _Space) -> FloatArray:
+    """(T, B, 4, 4) poses in the file, of an added root at rest."""
     columns = [performed.bones.index(name) for name in found.taken]
     world = performed.object_to_world[:, None] @ performed.matrices[:, columns]
-    if path is not None and not carries:
-        world = np.linalg.inv(path)[:, None] @ world
     poses = space.to_file @ world
     poses[..., :3, :3] /= scale_of(space.to_file @ space.at_rest)
     if found.added:
         still = np.tile(made.rest[0], (len(poses), 1, 1, 1))
         poses = np.concatenate([still, poses], axis=1)
-    if path is not None and carries and found.root is not None:
-        moved = space.to_file @ path @ np.linalg.inv(space.to_file)
-        poses[:, found.root] = moved @ made.rest[found.root]
     return poses
+
+
+def _in_file(path: FloatArray, space: _Space) -> FloatArray:
+    """Moves in the world (T, 4, 4) as moves in the file."""
+    return np.asarray(space.to_file @ path @ np.linalg.inv(space.to_file))
+
+
+def _carried(
+    poses: FloatArray, found: Outline, made: Skeleton, pelvis: str, path: FloatArray
+) -> FloatArray:
+    """Poses (T, B, 4, 4) with the root bone on the way `path` (T, 4, 4)."""
+    assert found.root is not None
+    return with_root(poses, found, made.rest, pelvis, path @ made.rest[found.root])
+
+
+def _left_out(
+    poses: FloatArray,
+    found: Outline,
+    made: Skeleton,
+    pelvis: str,
+    path: FloatArray,
+    *,
+    root_rests: bool,
+) -> FloatArray:
+    """Poses (T, B, 4, 4) without the way `path` (T, 4, 4). A root bone that did not go along is at
+    rest, under the hips."""
+    left = np.linalg.inv(path)[:, None] @ poses
+    if found.root is None or not root_rests:
+        return left
+    still = np.tile(made.rest[found.root], (len(poses), 1, 1))
+    return with_root(left, found, made.rest, pelvis, still)
+
+
+def _root_travels(performed: Poses, found: Outline, pelvis: str) -> bool:
+    """Whether the armature's root bone goes over the floor with the hips."""
+    if found.root is None or found.added:
+        return False
+    names = (found.names[found.root], pelvis)
+    columns = [performed.bones.index(name) for name in names]
+    world = performed.object_to_world[:, None] @ performed.matrices[:, columns]
+    root, hips = np.moveaxis(metres_per_unit(current_scene()) * world[..., :3, 3], 1, 0)
+    return travels(root, hips)
 
 
 def _space(options: ExportOptions, poses: Sequence[Poses]) -> _Space:

@@ -22,8 +22,7 @@ _ROOT_LENGTH = 0.25  # m, of an added root; nothing but its look depends on it
 class Outline:
     """Names of bones, parents first, and their parents' indices, -1 for none.
 
-    root: the bone above all others, if there is one that the pelvis hangs on; added: whether the
-    armature lacks it.
+    root: the topmost bone above the pelvis, if there is one; added: whether the armature lacks it.
     """
 
     names: tuple[str, ...]
@@ -77,7 +76,7 @@ def outline(
     if root or (one_root and len(tops) > 1):
         name = next(n for n in (*ROOT_NAMES, "_".join(names)) if n not in names)
         return Outline((name, *names), (-1, *(p + 1 for p in above)), 0, added=True)
-    return Outline(names, above, None, added=False)
+    return Outline(names, above, None if top is None else names.index(top.name), added=False)
 
 
 def skeleton(armature: bpy.types.Object, found: Outline, to_file: FloatArray) -> Skeleton:

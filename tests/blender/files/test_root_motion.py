@@ -21,6 +21,7 @@ from hangtime.devtools.rigs.layout import layouts
 from hangtime.solver.data.faults import MissingPart
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.numerics.rotations import axis_rotation
+from hangtime.tests.blender.helpers import rigs
 
 FRAMES = np.arange(170.0, 220.0)  # the take-off and some of the flight
 LEVEL = np.array([1.0, 1.0, 0.0])
@@ -65,6 +66,64 @@ def test_in_place_leaves_out_the_way_and_nothing_else(tmp_path: Path) -> None:
     apart = again.heads[:, columns] - shown.heads
     assert np.ptp(apart, axis=1).max() < 1e-4  # every bone was shifted alike
     assert np.abs(apart[..., 2]).max() < 1e-4
+
+
+def walking() -> bpy.types.Object:
+    """A figure whose hips go over the floor and turn above a root that rests, as do a camera's bone
+    on it and the one that carries a bone which follows the foot."""
+    rigs.reset()
+    helpers = [
+        rigs.BoneSpec("camera_root", "root", (0.3, 1.5, 1.8), (0.3, 1.5, 1.9)),
+        rigs.BoneSpec("ik_foot_root", "root", (0.3, 0.2, 0.0), (0.3, 0.2, 0.1)),
+        rigs.BoneSpec("ik_foot", "ik_foot_root", (0.12, 0.02, 0.1), (0.12, 0.02, 0.2)),
+    ]
+    armature = rigs.make_armature([*rigs.with_root(), *helpers])
+    hips = armature.pose.bones["hips"]
+    hips.rotation_mode = "XYZ"
+    for frame in range(1, 11):
+        hips.location = (0.1 * frame, 0.02 * frame**2, 0.05 * frame)
+        hips.rotation_euler = (0.0, 0.1 * frame, 0.1)
+        for channel in ("location", "rotation_euler"):
+            hips.keyframe_insert(channel, frame=frame)
+    follows = armature.pose.bones["ik_foot"].constraints.new("COPY_LOCATION")
+    follows.target, follows.subtarget = armature, "foot"
+    return armature
+
+
+def walked(root: RootMotion, path: Path) -> tuple[Recording, Recording]:
+    """The figure as Blender shows it and as the file has it."""
+    armature = walking()
+    shown = record(armature, np.arange(1.0, 11.0))
+    options = ExportOptions(Engine.UNREAL, root=root)
+    export_takes(armature, [armature.animation_data.action], path, options, pelvis="hips")
+    return shown, reimport(path, shown.frames, begins=1.0)
+
+
+def test_in_place_a_root_that_rests_goes_on_resting_under_the_hips(tmp_path: Path) -> None:
+    shown, again = walked(RootMotion.IN_PLACE, tmp_path / "walk.fbx")
+    at_rest = {bone.name: bone.matrix_local.translation for bone in walking().data.bones}
+    for name in ("root", "camera_root", "ik_foot_root"):
+        resting = np.tile(at_rest[name], (len(again.frames), 1))
+        np.testing.assert_allclose(again.heads[:, again.index(name)], resting, atol=1e-4)
+    hips, foot, follower = (again.index(name) for name in ("hips", "foot", "ik_foot"))
+    level = np.tile(at_rest["hips"][:2], (len(again.frames), 1))
+    np.testing.assert_allclose(again.heads[:, hips, :2], level, atol=1e-4)
+    np.testing.assert_allclose(again.heads[:, follower], again.heads[:, foot], atol=1e-4)
+    limbs = shown.heads[:, shown.index("foot")] - shown.heads[:, shown.index("hips")]
+    np.testing.assert_allclose(again.heads[:, foot] - again.heads[:, hips], limbs, atol=1e-4)
+
+
+def test_what_rests_on_a_root_bone_goes_with_it(tmp_path: Path) -> None:
+    shown, again = walked(RootMotion.ROOT_BONE, tmp_path / "walk.fbx")
+    root, camera, target = (again.index(n) for n in ("root", "camera_root", "ik_foot_root"))
+    assert np.ptp(again.heads[:, root], axis=0).max() > 0.5
+    turns = again.rotations[:, root]
+    beside = np.einsum("tji,tj->ti", turns, again.heads[:, camera] - again.heads[:, root])
+    assert np.ptp(beside, axis=0).max() < 1e-4
+    np.testing.assert_allclose(again.heads[:, target], again.heads[:, root], atol=1e-4)
+    for name in ("hips", "foot", "ik_foot"):
+        seen = shown.heads[:, shown.index(name)]
+        np.testing.assert_allclose(again.heads[:, again.index(name)], seen, atol=1e-4)
 
 
 def test_as_it_is_takes_no_root_bone_but_where_an_engine_needs_one(tmp_path: Path) -> None:
