@@ -18,7 +18,7 @@ def way(pelvis: FloatArray, rest: FloatArray, *, steady: bool) -> FloatArray:
 
     pelvis (T, 4, 4), rest (4, 4): in the world. Height, pitch and roll stay the body's own. While
     it somersaults its heading goes on evenly. steady: at the mean speed, without turns, as a cycle
-    that repeats needs it.
+    that repeats needs it; the figure sways about it.
     """
     heading = np.zeros(len(pelvis)) if steady else _heading(pelvis, rest)
     if steady:
@@ -27,7 +27,8 @@ def way(pelvis: FloatArray, rest: FloatArray, *, steady: bool) -> FloatArray:
     found[:, :3, :3] = axis_rotation(2, heading)
     places = pelvis[:, :3, 3]
     if steady:
-        places = np.linspace(places[0], places[-1], len(places))
+        line = np.linspace(places[0], places[-1], len(places))
+        places = line + (places - line).mean(axis=0)
     found[:, :3, 3] = (places - found[:, :3, :3] @ rest[:3, 3]) * _LEVEL
     return found
 

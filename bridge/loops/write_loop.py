@@ -87,14 +87,23 @@ class Loop:
         """The track without what the pelvis does not carry."""
         return self.track if self.travels and self.root is None else self.in_place
 
+    def moved(self, by: FloatArray) -> Loop:
+        """The same one elsewhere, by (3,) m."""
+        return replace(self, track=replace(self.track, root_head=self.track.root_head + by))
+
 
 def root_bone(armature: bpy.types.Object, pelvis: str) -> bpy.types.Bone:
     """The topmost bone above the pelvis, which moves all of the figure. Raises NoRootBone."""
-    bone = armature_data(armature).bones[pelvis]
-    if carrier_of(bone).parent is None:
+    top = _top_bone(armature, pelvis)
+    if top is None:
         raise NoRootBone(armature.name, pelvis)
-    top: bpy.types.Bone = bone.parent_recursive[-1]
     return top
+
+
+def _top_bone(armature: bpy.types.Object, pelvis: str) -> bpy.types.Bone | None:
+    bone = armature_data(armature).bones[pelvis]
+    above: list[bpy.types.Bone] = bone.parent_recursive
+    return None if carrier_of(bone).parent is None else above[-1]
 
 
 def write_loop(
@@ -108,8 +117,9 @@ def write_loop(
     """Write a loop as a copy of the recording's action, in slices; it is not assigned.
 
     What carries the body, or helper bones, without being of it holds still as in the cycle's first
-    frame. Helper bones stay on the body. Other channels keep their shape within the cycle, and
-    repeat; bones among them, such as fingers, give up evenly what they end away from their start.
+    frame. In place the body is brought over a root bone; one that travels does so under the body.
+    Helper bones stay on the body. Other channels keep their shape within the cycle, and repeat;
+    bones among them, such as fingers, give up evenly what they end away from their start.
     Raises NoControls.
     """
     showing = partial(showing_action, armature, recorded)
@@ -123,6 +133,8 @@ def write_loop(
     apart = () if rig is None else tuple(rig.used)
     company = yield from found_companions(armature, take, bodies, apart, showing)
     company = replace(company, root=None)
+    off_root = _off_root(armature, loop, poses)
+    body = loop.moved(-off_root)
     action = scene_copy(armature, recorded, name)
     forget_copied(action)
     whole = False
@@ -138,11 +150,11 @@ def write_loop(
         )
         if rig is None:
             steady = yield from steady_bases(armature, poses, bodies, frames, showing)
-            yield from _write_bodies(armature, curves, loop, poses, steady)
+            yield from _write_bodies(armature, curves, body, poses, steady)
         else:
-            yield from _write_controls(rig, action, curves, loop)
+            yield from _write_controls(rig, action, curves, body, off_root)
         if loop.root is not None and (rig is None or loop.root.name not in rig.carriers):
-            _write_root(armature, curves, loop.root, loop, poses)
+            _write_root(armature, curves, loop.root, loop, poses, off_root)
         company = yield from keep_followers(armature, action, curves, company, frames, poses)
         for curve in all_curves(action):
             repeat(curve)
@@ -151,7 +163,7 @@ def write_loop(
         note_take(armature, action, recorded)
         kept = None
         if rig is not None:
-            kept = yield from _kept(rig, action, loop)
+            kept = yield from _kept(rig, action, loop if loop.travels else body)
         whole = True
     finally:
         if not whole:  # cancelled in between: half an action is of no use to anybody
@@ -200,10 +212,14 @@ def _write_bodies(
 
 
 def _write_controls(
-    rig: ControlRig, action: bpy.types.Action, curves: fcurves.CurveHolder, loop: Loop
+    rig: ControlRig,
+    action: bpy.types.Action,
+    curves: fcurves.CurveHolder,
+    loop: Loop,
+    start: FloatArray,
 ) -> Incremental[None]:
     """Key the controls such that the bodies follow the cycle in place; the travel goes to those
-    that carry the figure.
+    that carry the figure, after a first move of them by start (3,) m, world.
 
     The curves are settled: what the controls are solved from ends as it begins.
     """
@@ -214,7 +230,9 @@ def _write_controls(
     bases = (yield from control_poses(rig, poses, loop.in_place, showing)).bases
     carried = loop.travels and (loop.root is None or loop.root.name in rig.carriers)
     with showing():
-        travel = shifts_of_carriers(rig, float(frames[0]), loop.travel)
+        begin, travel = (
+            shifts_of_carriers(rig, float(frames[0]), move) for move in (start, loop.travel)
+        )
         rests = {channel: channel.at_rest(armature) for channel in owned_by(rig, curves)}
     for channel, rest in rests.items():
         recorded = channel.recorded(curves, rest, frames[:1])
@@ -223,6 +241,7 @@ def _write_controls(
         if goes_on:
             values = np.concatenate([values[:-1], values[:1]])
             values += np.linspace(0.0, 1.0, len(frames))[:, None] * travel[channel.bone]
+            values += begin[channel.bone]
         write_cyclic(curves, channel.path, channel.bone, frames, values, goes_on=goes_on)
         yield None
 
@@ -295,14 +314,30 @@ def _write_rotation(
     write_cyclic(curves, bone.path_from_id(used), bone.name, frames, values, goes_on=False)
 
 
+def _off_root(armature: bpy.types.Object, loop: Loop, poses: Poses) -> FloatArray:
+    """(3,) m, level, world: how far the middle of the hips' sway is from over the root bone, where
+    they are at rest; 0 without one, and where the hips travel by themselves. poses: the
+    recording's, in whose first the root is held."""
+    pelvis = armature_data(armature).bones[loop.track.bones[0]]
+    root = _top_bone(armature, pelvis.name)
+    if root is None or (loop.travels and loop.root is None):
+        return np.zeros(3)
+    beside = np.array(root.matrix_local.inverted() @ pelvis.matrix_local)
+    over = poses.object_to_world[0] @ poses.matrices[0, poses.bones.index(root.name)] @ beside
+    middle = loop.in_place.root_head.mean(axis=0)
+    return np.asarray((middle - metres_per_unit(current_scene()) * over[:3, 3]) * [1.0, 1.0, 0.0])
+
+
 def _write_root(
     armature: bpy.types.Object,
     curves: fcurves.CurveHolder,
     root: bpy.types.Bone,
     loop: Loop,
     poses: Poses,
+    start: FloatArray,
 ) -> None:
-    """Let the root bone travel, from where the recording's first frame has it."""
+    """Let the root bone travel. start (3,) m, world: from where the recording's first frame has
+    it."""
     frames = loop.track.frames
     there = poses.matrices[0, poses.bones.index(root.name)]
     to_bone = poses.object_to_world[0, :3, :3]
@@ -311,7 +346,8 @@ def _write_root(
     rest = np.linalg.solve(np.array(root.matrix_local, float), there)[:3, 3]
     if not root.use_local_location:
         rest = there[:3, 3] - np.array(root.matrix_local, float)[:3, 3]
-    along = np.linalg.solve(to_bone, loop.travel / metres_per_unit(current_scene()))
-    values = rest + np.linspace(0.0, 1.0, len(frames))[:, None] * along
+    share = np.linspace(0.0, 1.0, len(frames))[:, None]
+    moves = (start + share * loop.travel) / metres_per_unit(current_scene())
+    values = rest + moves @ np.linalg.inv(to_bone).T
     path = pose_of(armature).bones[root.name].path_from_id("location")
     write_cyclic(curves, path, root.name, frames, values, goes_on=True)

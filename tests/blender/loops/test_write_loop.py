@@ -76,7 +76,7 @@ def test_speed_goes_on_across_the_seam() -> None:
 
 
 def test_in_place_leaves_the_steady_travel_out() -> None:
-    armature = made()
+    armature = made(root=False)
     track, _ = looped(armature, LoopRoot.IN_PLACE)
     steady = np.linspace(0.0, 1.0, len(FRAMES))[:, None] * TRAVEL
     first = shown(armature, track, FRAMES)
@@ -96,6 +96,27 @@ def test_root_bone_carries_the_travel_at_a_steady_speed() -> None:
     np.testing.assert_allclose(
         np.diff(root, axis=0), np.tile(speed, (len(frames) - 1, 1)), atol=CLOSE
     )
+
+
+@pytest.mark.parametrize("root", [LoopRoot.IN_PLACE, LoopRoot.ROOT_BONE])
+def test_the_body_sways_about_a_root_that_rests_in_the_recording(root: LoopRoot) -> None:
+    armature = made()
+    holder = fcurves.holder(armature)
+    for curve in [each for each in holder.fcurves if '"root"' in each.data_path]:
+        holder.fcurves.remove(curve)
+    armature.pose.bones["root"].matrix_basis.identity()
+    recorded = record(armature, FRAMES[:1])
+    track, _ = looped(armature, root)
+    seen = record(armature, FRAMES)
+    top, hips = (seen.heads[:, seen.index(name)] for name in ("root", "hips"))
+    at_rest = np.subtract(*(armature.data.bones[n].head_local for n in ("hips", "root")))
+    level = (hips - top).mean(axis=0)[:2]
+    np.testing.assert_allclose(level, at_rest[:2], atol=CLOSE)
+    if root is LoopRoot.IN_PLACE:
+        still = np.tile(recorded.heads[0, recorded.index("root")], (len(FRAMES), 1))
+        np.testing.assert_allclose(top, still, atol=CLOSE)
+    else:
+        np.testing.assert_allclose(hips, track.root_head, atol=CLOSE)
 
 
 def test_a_rig_without_a_root_bone_is_refused() -> None:
