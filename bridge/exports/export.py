@@ -53,11 +53,11 @@ def export_takes(
         before = data_blocks()
         try:
             rig = bake("Exported", found.skeleton, found.placed, found.takes)
-            names = {rig: CONVENTIONS[options.engine].object or armature.name}
             copies = copy_skin(skin, armature, rig, found.from_armature)
             moving = [copy for copy, mesh in copies.items() if mesh in shaped]
             drive_shapes(rig, moving, np.concatenate([take.shapes for take in found.takes]))
-            names |= {copy: mesh.name for copy, mesh in copies.items()}
+            names = {rig: CONVENTIONS[options.engine].object or armature.name}
+            names |= {copy: _beside(names[rig], mesh.name) for copy, mesh in copies.items()}
             with _data_named(copies):
                 write(rig, names, found.takes, Path(path), options, keeps_frames=keeps)
         finally:
@@ -72,6 +72,11 @@ def require_exportable(
     SameUsdNames."""
     bones = outline_for(armature, options, pelvis=None).names
     require_format(format_of(options), bones, Path(path))
+
+
+def _beside(rig: str, mesh: str) -> str:
+    """A mesh's name beside a rig's: an engine may want that of the rig, which so keeps it."""
+    return f"{mesh} Mesh" if mesh == rig else mesh
 
 
 @contextmanager

@@ -17,6 +17,7 @@ from hangtime.bridge.rows.choices import Engine, FileFormat
 from hangtime.operators.export.skin_text import skin_text
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.blender.helpers.actions import animated_rig
+from hangtime.tests.blender.helpers.fbx import fbx_file
 
 FRAME = 13
 
@@ -238,6 +239,17 @@ def test_mesh_data_keep_their_names_in_the_file(form: FileFormat, tmp_path: Path
         FileFormat.USD: rb'def Mesh "([\w.]+)"',
     }[form]
     assert sorted(re.findall(pattern, written))[0] == b"BodyMesh"
+
+
+def test_a_mesh_leaves_the_name_to_the_armature_that_unreal_leaves_out(tmp_path: Path) -> None:
+    armature, path = animated_rig(), tmp_path / "body.fbx"
+    body = skinned(armature)
+    body.name = "Armature"
+    action = armature.animation_data.action
+    export_takes(armature, [action], path, ExportOptions(Engine.UNREAL, skin=True))
+    nodes = fbx_file(path).transformations
+    assert nodes.keys() - armature.data.bones.keys() == {"Armature", "Armature Mesh"}
+    assert body.name == "Armature"
 
 
 def smiling(body: bpy.types.Object, armature: bpy.types.Object) -> bpy.types.Object:
