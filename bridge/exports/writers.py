@@ -48,7 +48,8 @@ def write(
     for thing in names:
         thing.select_set(True)
     present(bpy.context.view_layer).objects.active = rig
-    scene.frame_start, scene.frame_end = takes[0].first, max(take.last for take in takes)
+    scene.frame_start = takes[0].first
+    scene.frame_end = max(scene.frame_start + 1, *(take.last for take in takes))
     scene.frame_set(scene.frame_start - 1)
     with ExitStack() as called, tempfile.TemporaryDirectory() as folder:
         called.enter_context(under_name(rig.data, names[rig], bpy.data.armatures))

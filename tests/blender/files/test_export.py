@@ -12,6 +12,7 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 import addon_utils
+from hangtime.bridge.action_slots import all_curves
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.read import read_recording, record
 from hangtime.bridge.armature.write import side_by_side, write_action
@@ -195,3 +196,31 @@ def test_joints_are_in_place_however_bones_inherit_sizes(
     again = reimport(path, shown.frames)
     columns = [again.index(bone.name) for bone in shown.bones]
     np.testing.assert_allclose(again.heads[:, columns], shown.heads, atol=1e-4)
+
+
+@pytest.mark.parametrize("engine", [Engine.NONE, Engine.UNREAL])
+def test_a_take_of_one_frame_is_the_same_alone_and_among_others(
+    engine: Engine, tmp_path: Path
+) -> None:
+    armature = animated_rig()
+    longer = armature.animation_data.action
+    pose = longer.copy()
+    pose.name, pose.use_frame_range, pose.frame_start, pose.frame_end = "Pose", True, 7, 7
+    options = ExportOptions(engine, FileFormat.FBX)
+    found = []
+    for takes in ([pose], [longer, pose]):
+        path = tmp_path / f"{len(takes)}.fbx"
+        export_takes(armature, takes, path, options)
+        found.append(_curves(path, "Pose"))
+    assert [len(keys) for keys in found[0]] == [len(keys) for keys in found[1]]
+    for alone, among in zip(*found, strict=True):
+        assert np.ptp(alone[:, 1]) < 1e-6
+        np.testing.assert_allclose(alone[:, 1], among[:, 1], atol=1e-6)
+
+
+def _curves(path: Path, take: str) -> list[np.ndarray]:
+    """The keys of a file's take."""
+    before = set(bpy.data.actions)
+    bpy.ops.import_scene.fbx(filepath=str(path))
+    (action,) = (each for each in set(bpy.data.actions) - before if take in each.name)
+    return [fcurves.keys(curve) for curve in all_curves(action)]
