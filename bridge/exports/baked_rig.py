@@ -20,7 +20,7 @@ from ..armature.channels import channels, proper
 from .shapes import write_shapes
 from .skeleton import Skeleton
 
-_STILL = 1e-6  # of a bone's scale, which then has no keys
+SCALE_NOISE = 2e-5  # of a scale that is 1: in single precision poses and rest poses are off by half
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ def _write(
         bone = pose_of(rig).bones[name]
         bone.rotation_mode = "QUATERNION"
         written = {"location": place, "rotation_quaternion": channels(turns, "QUATERNION")}
-        if np.abs(sizes - 1.0).max() > _STILL:
+        if np.abs(sizes - 1.0).max() > SCALE_NOISE:
             written["scale"] = sizes
         for channel, values in written.items():
             path = bone.path_from_id(channel)

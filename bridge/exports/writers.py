@@ -20,6 +20,7 @@ from ..recipe.export import ExportOptions
 from ..rows.choices import FileFormat
 from .baked_rig import BakedTake
 from .engines import CONVENTIONS, ENDINGS, Convention, format_of
+from .fbx_exporter import plain_scales
 
 _SKELETONS = re.compile(
     r'def Xform ("[^"]+"\s*(?:\([^)]*\)\s*)?\{(?:(?!\bdef ).)*?def Skeleton )', re.S
@@ -63,6 +64,7 @@ def write(
                 called.enter_context(under_name(scene, takes[0].name, bpy.data.scenes))
             # What a viewport hides does not count as selected where that is asked.
             called.enter_context(bpy.context.temp_override(selected_objects=list(names)))
+            called.enter_context(plain_scales())
             _write_fbx(made, convention, keeps_frames=keeps_frames)
         elif form is FileFormat.GLTF:
             _write_gltf(made)

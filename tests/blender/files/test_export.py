@@ -32,6 +32,7 @@ from hangtime.tests.blender.helpers.actions import (
     assert_follows,
     place_object,
 )
+from hangtime.tests.blender.helpers.fbx import animated
 
 
 @pytest.fixture(autouse=True)
@@ -216,6 +217,19 @@ def test_a_take_of_one_frame_is_the_same_alone_and_among_others(
     for alone, among in zip(*found, strict=True):
         assert np.ptp(alone[:, 1]) < 1e-6
         np.testing.assert_allclose(alone[:, 1], among[:, 1], atol=1e-6)
+
+
+@pytest.mark.parametrize("engine", [Engine.NONE, Engine.UNITY])
+def test_what_is_not_scaled_has_no_animated_scale(engine: Engine, tmp_path: Path) -> None:
+    """Rounding, too, makes curves that vary, which Unity keeps as scale animation."""
+    armature, path = animated_rig(), tmp_path / "rig.fbx"
+    place_object(armature)
+    options = ExportOptions(engine, FileFormat.FBX)
+    export_takes(armature, [armature.animation_data.action], path, options)
+    scales = animated(path, "Lcl Scaling")
+    for bone in armature.data.bones:
+        assert len(scales[bone.name]) == 3
+        np.testing.assert_array_equal(scales[bone.name], 1.0)
 
 
 def _curves(path: Path, take: str) -> list[np.ndarray]:

@@ -39,6 +39,19 @@ def fbx_file(path: Path) -> FbxFile:
     return FbxFile(settings[b"UnitScaleFactor"][0], settings[b"UpAxis"][0], nodes, takes)
 
 
+def animated(path: Path, channel: str) -> dict[str, list[Any]]:
+    """The values of a channel's curves, such as "Lcl Scaling", by node."""
+    root = parse_fbx.parse(str(path))[0]
+    objects = {each.props[0]: each for each in _child(root, b"Objects").elems}
+    joined = [each.props for each in _child(root, b"Connections").elems]
+    of = {props[1]: _name(objects[props[2]]) for props in joined if channel.encode() in props[3:]}
+    found: dict[str, list[Any]] = {name: [] for name in of.values()}
+    for _, curve, node, *_ in joined:
+        if node in of and objects[curve].id == b"AnimationCurve":
+            found[of[node]].append(_child(objects[curve], b"KeyValueFloat").props[0])
+    return found
+
+
 def _name(element: Any) -> str:
     return str(element.props[1].split(b"\x00")[0].decode())
 

@@ -1,0 +1,31 @@
+"""What Blender's FBX exporter would have wrong in a file, put right."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib import import_module
+from typing import Any
+
+from mathutils import Vector
+
+from .baked_rig import SCALE_NOISE
+
+
+@contextmanager
+def plain_scales() -> Iterator[None]:
+    """Context in which the exporter writes scales that are 1 as 1; of the rounding in its matrices
+    it makes curves that vary, which other programs take for animated scales."""
+    wrapper: Any = import_module("io_scene_fbx.fbx_utils").ObjectWrapper
+    exported = wrapper.fbx_object_tx
+
+    def rounded(*args: Any, **options: Any) -> tuple[Any, ...]:
+        place, turn, scale, *matrices = exported(*args, **options)
+        plain = Vector([1.0 if abs(each - 1.0) < SCALE_NOISE else each for each in scale])
+        return place, turn, plain, *matrices
+
+    wrapper.fbx_object_tx = rounded
+    try:
+        yield
+    finally:
+        wrapper.fbx_object_tx = exported
