@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 from mathutils import Vector
 
 from .baked_rig import SCALE_NOISE
+
+_TIME = rb"%sS\x05\x00\x00\x00KTimeS\x04\x00\x00\x00TimeS\x00\x00\x00\x00L(.{8})"
 
 
 @contextmanager
@@ -29,3 +33,14 @@ def plain_scales() -> Iterator[None]:
         yield
     finally:
         wrapper.fbx_object_tx = exported
+
+
+def span_takes(path: Path) -> None:
+    """Have a file's span of time end with its longest take, for programs that take their timeline
+    from it. Blender writes a second."""
+    said = path.read_bytes()
+    ends = re.findall(_TIME % b"LocalStop", said, re.DOTALL)
+    span = re.search(_TIME % b"TimeSpanStop", said, re.DOTALL)
+    assert span is not None
+    last = max(ends, key=lambda end: int.from_bytes(end, "little", signed=True))
+    path.write_bytes(said[: span.start(1)] + last + said[span.end(1) :])

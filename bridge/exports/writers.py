@@ -20,7 +20,7 @@ from ..recipe.export import ExportOptions
 from ..rows.choices import FileFormat
 from .baked_rig import BakedTake
 from .engines import CONVENTIONS, ENDINGS, Convention, format_of
-from .fbx_exporter import plain_scales
+from .fbx_exporter import plain_scales, span_takes
 
 _SKELETONS = re.compile(
     r'def Xform ("[^"]+"\s*(?:\([^)]*\)\s*)?\{(?:(?!\bdef ).)*?def Skeleton )', re.S
@@ -66,6 +66,7 @@ def write(
             called.enter_context(bpy.context.temp_override(selected_objects=list(names)))
             called.enter_context(plain_scales())
             _write_fbx(made, convention, keeps_frames=keeps_frames)
+            span_takes(made)
         elif form is FileFormat.GLTF:
             _write_gltf(made)
         else:

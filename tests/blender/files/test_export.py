@@ -32,7 +32,7 @@ from hangtime.tests.blender.helpers.actions import (
     assert_follows,
     place_object,
 )
-from hangtime.tests.blender.helpers.fbx import animated
+from hangtime.tests.blender.helpers.fbx import animated, fbx_file
 
 
 @pytest.fixture(autouse=True)
@@ -230,6 +230,22 @@ def test_what_is_not_scaled_has_no_animated_scale(engine: Engine, tmp_path: Path
     for bone in armature.data.bones:
         assert len(scales[bone.name]) == 3
         np.testing.assert_array_equal(scales[bone.name], 1.0)
+
+
+@pytest.mark.parametrize("engine", [Engine.NONE, Engine.UNREAL])
+def test_the_time_of_an_fbx_lasts_as_long_as_its_longest_take(
+    engine: Engine, tmp_path: Path
+) -> None:
+    armature, path = animated_rig(), tmp_path / "rig.fbx"
+    bpy.context.scene.render.fps = 12
+    longer = armature.animation_data.action
+    shorter = longer.copy()
+    shorter.use_frame_range, shorter.frame_start, shorter.frame_end = True, 3, 8
+    export_takes(armature, [longer, shorter], path, ExportOptions(engine, FileFormat.FBX))
+    seconds = (longer.frame_range[1] - longer.frame_range[0]) / 12.0
+    found = fbx_file(path)
+    assert found.spans[0] == pytest.approx((0.0, seconds))
+    assert sorted(last for _, last in found.spans[1:]) == pytest.approx([5.0 / 12.0, seconds])
 
 
 def _curves(path: Path, take: str) -> list[np.ndarray]:

@@ -8,6 +8,7 @@ from typing import Any
 
 from io_scene_fbx import parse_fbx
 
+_TICKS = 46186158000  # in a second
 _DEFAULTS = {
     b"Lcl Translation": (0.0, 0.0, 0.0),
     b"Lcl Rotation": (0.0, 0.0, 0.0),
@@ -18,12 +19,13 @@ _DEFAULTS = {
 @dataclass(frozen=True)
 class FbxFile:
     """unit: centimetres. up: index of the axis. transformations: place, degrees and scale by node.
-    takes: names of its animations."""
+    takes: names of its animations. spans: start and end of its time, and of each, s."""
 
     unit: float
     up: int
     transformations: dict[str, tuple[float, ...]]
     takes: tuple[str, ...]
+    spans: tuple[tuple[float, float], ...]
 
 
 def fbx_file(path: Path) -> FbxFile:
@@ -35,8 +37,18 @@ def fbx_file(path: Path) -> FbxFile:
         if each.id == b"Model":
             said = {**_DEFAULTS, **_properties(each)}
             nodes[_name(each)] = tuple(float(v) for key in _DEFAULTS for v in said[key])
-    takes = tuple(_name(each) for each in objects if each.id == b"AnimationStack")
-    return FbxFile(settings[b"UnitScaleFactor"][0], settings[b"UpAxis"][0], nodes, takes)
+    stacks = [each for each in objects if each.id == b"AnimationStack"]
+    takes = tuple(_name(each) for each in stacks)
+    spans = [_span(settings, b"TimeSpanStart", b"TimeSpanStop")]
+    spans += [_span(_properties(each), b"LocalStart", b"LocalStop") for each in stacks]
+    return FbxFile(
+        settings[b"UnitScaleFactor"][0], settings[b"UpAxis"][0], nodes, takes, tuple(spans)
+    )
+
+
+def _span(properties: dict[bytes, tuple[Any, ...]], *names: bytes) -> tuple[float, float]:
+    first, last = (properties.get(name, (0,))[0] / _TICKS for name in names)
+    return first, last
 
 
 def animated(path: Path, channel: str) -> dict[str, list[Any]]:
