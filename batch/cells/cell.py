@@ -9,9 +9,9 @@ from pathlib import Path
 from time import perf_counter
 from typing import TextIO
 
+from ...operators.files.outbox import Outbox
 from ...operators.headless.explained import explained
-from ...operators.headless.outbox import Outbox
-from ...operators.headless.stages import Stages
+from ...operators.terminal.stages import Stages
 from ...solver.data.faults import Fault, NoSolution, OutputNotWritable
 from ...solver.worker.pipeline import ADAPTING, FITTING
 from ..records.faults import BatchFault, unusable

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from ...bridge.formats.bvh_writer import write_bvh
-from ...operators.headless.outbox import Outbox, not_writable
+from ...operators.files.outbox import Outbox, not_writable
 from ...operators.headless.result_files import write_report, write_trajectory
 from ...solver.data.reports.recording import Origin
 from ...solver.data.reports.report import Report

@@ -15,12 +15,12 @@ from ...bridge.recipe.problem import Recipe
 from ...bridge.recipe.recording import FileReading
 from ...bridge.recipe.result import ResultOptions, require_return_after
 from ...bridge.rows.choices import FileFormat
+from ...operators.files.outbox import Outbox
 from ...operators.headless.clip import Clip, LoadedClip, load
 from ...operators.headless.doubts import doubts_about
-from ...operators.headless.outbox import Outbox
 from ...operators.headless.outputs import Outputs, require_exported, require_place
 from ...operators.headless.result_files import result_lines
-from ...operators.headless.stages import Stages
+from ...operators.terminal.stages import Stages
 from ...operators.words.doctor_text import diagnosis_text, finding_sentence
 from ...operators.words.headline import nearness
 from ...solver.data.faults import BadRecipe, Fault, FitNeedsSupport

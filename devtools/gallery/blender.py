@@ -14,7 +14,7 @@ from ...bridge.files.import_clip import import_clip
 from ...bridge.files.reproportioned import build_reproportioned
 from ...bridge.picture.render import draw_sheet
 from ...bridge.picture.sheet import View
-from ...operators.headless.quiet import quiet
+from ...operators.terminal.quiet import quiet
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import BEYOND, Recording
 from ..checks.penetrations import SolidCheck

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...bridge.armature.read import record
 from ...bridge.armature.write import write_action
-from ...operators.headless.quiet import quiet
+from ...operators.terminal.quiet import quiet
 from ...solver.data.faults import Fault
 from ...solver.skeleton.mapping import guess_bones
 from ...solver.skeleton.parts import KEYS, Part, Side, label_of

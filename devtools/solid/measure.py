@@ -8,7 +8,7 @@ from ...bridge.armature.read import read_recording, record
 from ...bridge.armature.write import write_action
 from ...bridge.files.import_clip import import_clip
 from ...bridge.files.reproportioned import build_reproportioned
-from ...operators.headless.quiet import quiet
+from ...operators.terminal.quiet import quiet
 from ...solver.data.faults import Fault
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.fitting.fit import Fit

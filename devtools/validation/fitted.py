@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...operators.headless.clip import Clip, load
-from ...operators.headless.stages import Stages
+from ...operators.terminal.stages import Stages
 from ...solver.analysis.accelerations import com_acceleration
 from ...solver.arrays import FloatArray
 from ...solver.data.constants import STANDARD_GRAVITY, UP

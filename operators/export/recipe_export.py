@@ -21,7 +21,7 @@ from ...bridge.takes.options import result_options
 from ...solver.data.problem import MotionProblem
 from ...solver.data.scene import SceneObject
 from ...solver.data.solver_options import Method
-from ..headless.outbox import Outbox
+from ..files.outbox import Outbox
 from ..names import OperatorId
 from ..operator_types import FROM_BLEND, OperatorResult
 from ..solve.adapt import ask_for, unanalysed

@@ -9,7 +9,7 @@ from bpy_extras.io_utils import ExportHelper
 
 from ...bridge.plots.charts import kept_takes
 from ...bridge.plots.curves import table
-from ..headless.outbox import Outbox
+from ..files.outbox import Outbox
 from ..names import OperatorId
 from ..operator_types import FROM_BLEND, OperatorResult
 from ..solve.common import NO_FILE, FaultyOperator, chosen_armature, required_armature

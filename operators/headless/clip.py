@@ -21,9 +21,9 @@ from ...solver.doctor.stretch import Span
 from ...solver.skeleton.bind_pose import bind_frames
 from ...solver.worker.pipeline import Subject, measure
 from ...solver.worker.stated_scale import check_scale
+from ..terminal.quiet import quiet
+from ..terminal.stages import Stages
 from ..words.analysis_text import relative
-from .quiet import quiet
-from .stages import Stages
 
 SCENE = ".blend"
 

@@ -18,16 +18,16 @@ from ...solver.data.faults import BadRecipe, Fault, NoSolution, OptionNotTaken
 from ...solver.data.problem import MotionProblem
 from ...solver.doctor.repairs import Repairs
 from ...solver.worker.pipeline import solve
+from ..files.outbox import Outbox, not_writable
+from ..terminal.stages import WIDTH, Stages
 from ..words.analysis_text import analysis_text, starter_recipe
 from ..words.report_text import gravity_lines
 from .clip import Clip, LoadedClip, load
 from .doctor import examined, told, write_recipe_of
 from .doubts import doubts_about
 from .explained import CANCELLED, NO_SOLUTION, WRONG_INPUT, ended_by_signals, explained
-from .outbox import Outbox, not_writable
 from .outputs import Outputs, linked_files, require_apart, require_exported, require_place
 from .result_files import every_name, result_lines
-from .stages import WIDTH, Stages
 
 
 def run(argv: Sequence[str]) -> int:
@@ -179,7 +179,7 @@ def adapt(options: argparse.Namespace) -> None:
     inputs = (*clip.files, options.recipe, *recipe.meshes)
     require_apart(inputs, options.out, export)
     with Outbox(options.out) as outbox:
-        outbox.sweep(every_name())
+        outbox.claim(every_name())
         loaded = load(clip, problem, stages, recipe.repairs)
         require_apart(linked_files(), options.out, export)
         require_place(loaded, wanted, recipe.loop)

@@ -15,12 +15,12 @@ from ...solver.doctor.examination.diagnose import Diagnosis, diagnose
 from ...solver.doctor.finding import Finding
 from ...solver.doctor.repairs import filled_frame
 from ...solver.doctor.stretch import Span
+from ..files.outbox import not_writable
 from ..words.analysis_text import relative
 from ..words.doctor_text import diagnosis_text, finding_sentence, rounded
 from ..words.doubt_text import file_doubts
 from ..words.report_text import guesses
 from .clip import Clip, read_clip
-from .outbox import not_writable
 
 
 @dataclass(frozen=True)

@@ -21,9 +21,10 @@ from ...solver.data.reports.report import Report
 from ...solver.data.scaling import scaled_problem
 from ...solver.scene.object_motion import ObjectMotion
 from ...solver.worker.pipeline import AdaptationResult
+from ..files.outbox import Outbox
+from ..terminal.quiet import quiet
+from ..terminal.stages import Stages
 from .clip import LoadedClip
-from .outbox import Outbox
-from .quiet import quiet
 from .result_files import (
     BEST,
     EXPORTED,
@@ -34,7 +35,6 @@ from .result_files import (
     write_report,
     write_trajectory,
 )
-from .stages import Stages
 
 if TYPE_CHECKING:  # as in clip.py
     import bpy

@@ -12,12 +12,12 @@ from ...solver.data.reports.report import Report, as_json
 from ...solver.results.npz_export import save
 from ...solver.results.unseen_support import hints_left
 from ...solver.worker.pipeline import AdaptationResult
+from ..files.outbox import Outbox, not_writable
 from ..words.headline import headline
 from ..words.messages import together
 from ..words.report_text import as_text
 from ..words.warning_text import warning_lines, warnings_of
 from .explained import explained
-from .outbox import Outbox, not_writable
 
 EXPORTED = "adapted"  # file name without ending
 SAVED = f"{EXPORTED}.blend"

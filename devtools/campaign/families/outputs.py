@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ....operators.headless.outbox import Outbox
+from ....operators.files.outbox import Outbox
 from ....solver.data.faults import Fault
 from ..protocol.case import Changed, Family, HostileCase, LeftBehind
 

@@ -20,7 +20,7 @@ from ....bridge.controls.refusals import require_posable
 from ....bridge.recipe.result import ResultOptions
 from ....bridge.takes.plan import AdaptedMotion
 from ....bridge.takes.write_result import write_result
-from ....operators.headless.quiet import quiet
+from ....operators.terminal.quiet import quiet
 from ....operators.words.messages import sentence
 from ....solver.arrays import FloatArray, IntArray
 from ....solver.body.anatomy import map_anatomy

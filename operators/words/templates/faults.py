@@ -138,6 +138,8 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     ),
     faults.OutputNotWritable: "Nothing can be written to {path} ({problem}); choose another place "
     "or allow writing there.",
+    faults.OutputFolderBusy: "Another adaptation or batch is writing into {path}; wait until "
+    "it ends, or choose another folder with --out.",
     faults.WouldReplaceInput: "The result would be written over {path}, from which it is made; "
     "choose another folder with --out.",
     faults.ContradictoryPins: "“{first}” and “{second}” contradict each other by {metres:length}, "

@@ -37,6 +37,13 @@ class OutputNotWritable(Fault):
 
 
 @dataclass
+class OutputFolderBusy(Fault):
+    """Another process is writing its results into the output folder."""
+
+    path: str
+
+
+@dataclass
 class WouldReplaceInput(Fault):
     """A file of the result would take the place of one that it is made from: the recording, its
     skeleton, the recipe, an object's mesh, what a scene links."""

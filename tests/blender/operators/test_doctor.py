@@ -17,7 +17,7 @@ from hangtime.bridge.recipe.problem import locate, parse_recipe
 from hangtime.bridge.recipe.recording import FileReading
 from hangtime.operators.headless.cli import main
 from hangtime.operators.headless.clip import Clip, load
-from hangtime.operators.headless.stages import Stages
+from hangtime.operators.terminal.stages import Stages
 from hangtime.solver.data.faults import NotBetweenFrames, NothingLeft, OddScale, OutsideKeys
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis

@@ -16,7 +16,7 @@ from hangtime.bridge import worker_client
 from hangtime.bridge.action_slots import all_curves
 from hangtime.devtools.campaign import child
 from hangtime.devtools.campaign.families import clips, recipes, sessions
-from hangtime.operators.headless.outbox import Outbox
+from hangtime.operators.files.outbox import Outbox
 from hangtime.solver.data.faults import UnreadableClip
 from hangtime.solver.optimisation import sqp
 

@@ -4,7 +4,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-from hangtime.operators.headless.outbox import Outbox
+from hangtime.operators.files.outbox import Outbox
 from hangtime.operators.headless.result_files import write_report
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.reports.recording import Origin

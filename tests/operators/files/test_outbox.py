@@ -1,11 +1,15 @@
 """Files of a job are delivered together, or not at all."""
 
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
-from hangtime.operators.headless.outbox import Outbox
-from hangtime.solver.data.faults import OutputNotWritable
+from hangtime.operators.files import lock as locking
+from hangtime.operators.files.lock import LOCK
+from hangtime.operators.files.outbox import Outbox
+from hangtime.solver.data.faults import OutputFolderBusy, OutputNotWritable
 
 
 def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:
@@ -75,5 +79,30 @@ def test_what_a_killed_run_has_left_is_removed_and_nothing_else(tmp_path: Path) 
     killed.write_text("sheet.png", "half of it")
     (tmp_path / "unfinished-symphony.txt").write_text("the artist's")
     with Outbox(tmp_path) as outbox:
-        outbox.sweep(["sheet.png", "film.mp4"])
+        outbox.claim(["sheet.png", "film.mp4"])
     assert [path.name for path in tmp_path.iterdir()] == ["unfinished-symphony.txt"]
+
+
+def test_a_folder_into_which_another_run_writes_is_refused_and_its_files_stay(
+    tmp_path: Path,
+) -> None:
+    folder = tmp_path / "out"
+    with Outbox(folder) as first:
+        first.claim(["report.txt"])
+        first.write_text("report.txt", "of the first")
+        with pytest.raises(OutputFolderBusy), Outbox(folder) as second:
+            second.claim(["report.txt"])
+        first.deliver()
+    assert [path.name for path in folder.iterdir()] == ["report.txt"]
+    assert (folder / "report.txt").read_text() == "of the first"
+
+
+def test_the_lock_of_a_run_that_was_killed_holds_nobody_up(tmp_path: Path) -> None:
+    lock = Path(locking.__file__)
+    run = f"import runpy, os, pathlib; at = pathlib.Path({str(tmp_path / LOCK)!r})\n"
+    run += f"kept = runpy.run_path({str(lock)!r})['take'](at, wait=False)\nos._exit(9)"
+    assert subprocess.run([sys.executable, "-c", run]).returncode == 9
+    assert (tmp_path / LOCK).exists()
+    with Outbox(tmp_path) as outbox:
+        outbox.claim([])
+    assert not list(tmp_path.iterdir())

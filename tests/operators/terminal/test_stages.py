@@ -3,7 +3,7 @@
 from io import StringIO
 
 import pytest
-from hangtime.operators.headless.stages import Stages
+from hangtime.operators.terminal.stages import Stages
 
 
 @pytest.mark.parametrize(

@@ -5,9 +5,12 @@ from collections.abc import Iterable
 from contextlib import suppress
 from errno import EISDIR
 from pathlib import Path
+from tempfile import TemporaryFile
 from types import TracebackType
+from typing import BinaryIO
 
-from ...solver.data.faults import OutputNotWritable
+from ...solver.data.faults import OutputFolderBusy, OutputNotWritable
+from .lock import LOCK, remove, take
 
 PART = "unfinished-"
 
@@ -23,15 +26,14 @@ class Outbox:
         self.folder = folder
         self._made: list[Path] = []
         self._names: list[str] = []
+        self._lock: BinaryIO | None = None
 
     def __enter__(self) -> "Outbox":
         missing = [f for f in (self.folder, *self.folder.parents) if not f.exists()]
-        probe = self.folder / f"{PART}probe"
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
             self._made = missing
-            probe.write_bytes(b"")
-            probe.unlink()
+            TemporaryFile(prefix=PART, dir=self.folder).close()
         except OSError as error:
             self._remove_made()
             raise not_writable(self.folder, error) from error
@@ -47,13 +49,22 @@ class Outbox:
             # the folder may have gone, or a file may have its name
             with suppress(FileNotFoundError, NotADirectoryError):
                 self._part(name).unlink()
+        if self._lock is not None:
+            remove(self.folder / LOCK, self._lock)
         self._remove_made()
 
-    def sweep(self, names: Iterable[str]) -> None:
-        """Removes what a run that was killed has left of the files with these names.
+    def claim(self, names: Iterable[str]) -> None:
+        """Has the folder to itself until this is left, and removes what a run that was killed has
+        left of the files with these names.
 
-        Raises OutputNotWritable.
+        Raises OutputFolderBusy, OutputNotWritable.
         """
+        try:
+            self._lock = take(self.folder / LOCK, wait=False)
+        except BlockingIOError as error:
+            raise OutputFolderBusy(str(self.folder)) from error
+        except OSError as error:  # also of a file system without locks
+            raise not_writable(self.folder / LOCK, error) from error
         for name in names:
             try:
                 self._part(name).unlink(missing_ok=True)
