@@ -10,8 +10,8 @@ from ...bridge.formats.acclaim import find_asf, read_acclaim
 from ...bridge.formats.bvh import read_bvh
 from ...bridge.formats.guess import guess_unit, guess_up
 from ...bridge.formats.motion_clip import MotionClip, UpAxis, to_recording
+from ...bridge.formats.paths import require_readable
 from ...solver.analysis.take import require_inside
-from ...solver.data.faults import ClipNotOpened
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.reports.recording import Origin
@@ -50,8 +50,7 @@ class ReadClip:
 def read_file(path: Path, rate: float | None) -> MotionClip:
     """A BVH or AMC file as it is. rate: Hz, in place of what a BVH tells. Raises ClipNotOpened,
     UnreadableClip, NonFiniteKey."""
-    if not path.is_file():
-        raise ClipNotOpened(str(path), "there is no such file")
+    require_readable(path)
     if path.suffix.lower() == ".bvh":
         return read_bvh(path, rate)
     return read_acclaim(find_asf(path), path, rate)

@@ -10,6 +10,7 @@ from glob import glob
 from pathlib import Path
 
 from ...bridge.formats.acclaim import clip_files
+from ...bridge.formats.paths import AtPath, kind_of
 from ..records.faults import WrongPlan
 
 IN_FOLDERS = (".bvh", ".amc", ".fbx")  # a .blend is taken where it is named itself
@@ -34,11 +35,23 @@ def find_clips(words: Sequence[str], out: Path) -> list[str]:
 
 def _meant(word: str, out: Path) -> list[Path]:
     path = Path(word)
-    if path.is_file():
-        if path.suffix.lower() not in SUFFIXES:
-            raise WrongPlan(f"{path} is no recording; clips are {_listed()} and .blend files.")
-        return [path]
-    return files_meant(word, IN_FOLDERS, out)
+    if not is_file(path):
+        return files_meant(word, IN_FOLDERS, out)
+    if path.suffix.lower() not in SUFFIXES:
+        raise WrongPlan(f"{path} is no recording; clips are {_listed()} and .blend files.")
+    return [path]
+
+
+def is_file(path: Path) -> bool:
+    """Whether a path that somebody named is a file's. Raises WrongPlan for what may not be looked
+    at, for a name that is too long, and for a pipe or a device."""
+    try:
+        kind = kind_of(path)
+    except OSError as error:
+        raise WrongPlan(f"{path} cannot be read ({error.strerror}); check its path.") from error
+    if kind is AtPath.OTHER:
+        raise WrongPlan(f"{path} is a pipe or a device, and no file; name a file.")
+    return kind is AtPath.FILE
 
 
 def files_meant(word: str, suffixes: Collection[str], out: Path) -> list[Path]:

@@ -22,7 +22,7 @@ from typing import Any
 
 from ..records.faults import WrongPlan
 from ..records.manifest import Value
-from .clips import absolute, files_meant, find_clips
+from .clips import absolute, files_meant, find_clips, is_file
 from .recipes import VariedRecipe
 
 RECIPES = (".toml", ".json")
@@ -66,7 +66,7 @@ def find_recipes(words: Sequence[str], out: Path) -> list[str]:
     found: dict[str, None] = {}
     for word in words:
         path = Path(word)
-        paths = [path] if path.is_file() else files_meant(word, RECIPES, out)
+        paths = [path] if is_file(path) else files_meant(word, RECIPES, out)
         if not paths:
             raise WrongPlan(f"No recipe (.toml, .json) is meant by “{word}”; check the path.")
         found.update(dict.fromkeys(map(absolute, paths)))
@@ -96,7 +96,7 @@ def _pair(place: str, row: dict[str, Any], table: Path, check: bool) -> Pair:
         if not word.strip():
             return ""
         found = table.parent / word.strip()
-        if not found.is_file():
+        if not is_file(found):
             raise WrongPlan(f"Table {table}, {place}: there is no {key} {found}; check its path.")
         return absolute(found)
 

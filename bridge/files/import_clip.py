@@ -13,11 +13,7 @@ from warnings import catch_warnings, simplefilter
 import bpy
 import numpy as np
 
-from ...solver.data.faults import (
-    ClipNotOpened,
-    UnknownClipFormat,
-    UnreadableClip,
-)
+from ...solver.data.faults import UnknownClipFormat, UnreadableClip
 from ...solver.data.reports.recording import ChosenTake
 from ..accessors import current_action, current_scene, pose_of, present
 from ..armature import fcurves
@@ -27,6 +23,7 @@ from ..formats.bvh import read_bvh
 from ..formats.fbx_records import require_sound
 from ..formats.guess import guess_unit, guess_up, likely_unit
 from ..formats.motion_clip import MotionClip, UpAxis
+from ..formats.paths import require_readable
 from .build_armature import FIRST_FRAME, build_armature
 from .data_blocks import SceneState, data_blocks, remove_added
 from .fbx_takes import choose_take, places_without_keys
@@ -80,6 +77,7 @@ def import_clip(
             case ".bvh":
                 return _placed(read_bvh(path, rate), unit, up, partial(_import_bvh, path))
             case ".amc":
+                require_readable(path)
                 skeleton = find_asf(path) if asf is None else asf
                 return _placed(read_acclaim(skeleton, path, rate), unit, up, build_armature)
             case ".fbx":
@@ -125,8 +123,7 @@ def _import_bvh(path: Path, _: MotionClip, scale: float, up: UpAxis) -> bpy.type
 def _import_fbx(
     path: Path, unit: float | None, armature_name: str | None, take: str | None
 ) -> ImportedClip:
-    if not path.is_file():
-        raise ClipNotOpened(str(path), "there is no such file")
+    require_readable(path)
     require_sound(path)
     before = data_blocks()
     with places_without_keys() as places, _importer("io_scene_fbx", path):

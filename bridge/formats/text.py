@@ -9,6 +9,7 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ...solver.data.faults import ClipNotOpened, NonFiniteKey, UnreadableClip
+from .paths import require_readable
 
 BYTE_ORDER_MARK = "\ufeff"
 
@@ -30,6 +31,7 @@ class Reader:
     def __init__(self, path: Path) -> None:
         """Raises ClipNotOpened, or UnreadableClip where the file is not text."""
         self.path = path
+        require_readable(path)
         try:
             data = path.read_bytes()
             text = data.decode("utf-8")

@@ -37,6 +37,7 @@ from ...solver.data.scene import SceneObject, SceneRole
 from ...solver.numerics.rotations import axis_rotation
 from ...solver.scene.triangle_mesh import placed_mesh
 from ..formats.obj import UnreadableMesh, read_obj
+from ..formats.paths import unreadable
 from ..recipe_syntax.items import TRAVEL_WORDS, travelled
 from ..recipe_syntax.table import Table, shown
 from ..shapes.boxes import SOLIDS
@@ -165,8 +166,8 @@ def _rows(table: Table, key: str) -> FloatArray:
 
 def _from_file(table: Table) -> tuple[FloatArray, IntArray]:
     path = Path(table.source.path).parent / (table.word("file") or "")
-    if not path.is_file():  # a device may have no end
-        table.refuse("file", f"there is no file {path}; check its path")
+    if problem := unreadable(path):
+        table.refuse("file", f"{path} cannot be read ({problem}); check its path")
     try:
         return read_obj(path)
     except UnreadableMesh as error:

@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...bridge.formats.paths import no_folder
+
 FILE = "trajectory.npz"
 NUMBERS = "fiub"  # kinds of numpy's types
 Array = NDArray[Any]
@@ -44,6 +46,9 @@ def main(argv: list[str]) -> int:
     words = "the most that a number may differ, in the unit of its array (default: 1e-6)"
     parser.add_argument("--within", type=float, default=1e-6, metavar="X", help=words)
     options = parser.parse_args(argv)
+    for folder in (options.before, options.after):
+        if problem := no_folder(folder):
+            parser.error(f"{folder} cannot be read ({problem}); name a folder of results")
     found = []
     for comparison in compare_folders(options.before, options.after):
         print(comparison.line(options.within), flush=True)

@@ -29,8 +29,8 @@ class Outbox:
         self._lock: BinaryIO | None = None
 
     def __enter__(self) -> "Outbox":
-        missing = [f for f in (self.folder, *self.folder.parents) if not f.exists()]
         try:
+            missing = [f for f in (self.folder, *self.folder.parents) if not f.exists()]
             self.folder.mkdir(parents=True, exist_ok=True)
             self._made = missing
             TemporaryFile(prefix=PART, dir=self.folder).close()

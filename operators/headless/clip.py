@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...bridge.formats.acclaim import clip_files
+from ...bridge.formats.paths import require_readable
 from ...bridge.recipe.recording import FileReading
 from ...solver.analysis.analyse import chosen_frames
 from ...solver.analysis.take import require_inside
-from ...solver.data.faults import ClipNotOpened, MirroredInBlender, NoArmature, NotInFile
+from ...solver.data.faults import MirroredInBlender, NoArmature, NotInFile, UnreadableClip
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.reports.recording import ChosenTake, Origin
@@ -168,29 +169,45 @@ def _open(path: Path, wanted: str | None) -> tuple[bpy.types.Object, Origin]:
 
     from ...bridge.accessors import current_action, current_scene, present
 
+    require_readable(path)
     try:
         with quiet():
             bpy.ops.wm.open_mainfile(filepath=str(path), load_ui=False)
     except RuntimeError as error:
-        problem = "Blender does not read it" if path.is_file() else "there is no such file"
-        raise ClipNotOpened(str(path), problem) from error
+        problem = "Blender cannot open it, as it is damaged or no .blend file"
+        raise UnreadableClip(str(path), None, problem) from error
     armatures = [o for o in current_scene().objects if o.type == "ARMATURE"]
     animated = [o for o in armatures if current_action(o) is not None]
     active = present(bpy.context.view_layer).objects.active
     if wanted is not None:
         chosen = [o for o in armatures if o.name.casefold() == wanted.casefold()]
         if not chosen:
+            _require_libraries(path)
             known = tuple(sorted(o.name for o in armatures))
             raise NotInFile(str(path), "armature", wanted, known)
     else:
         chosen = [o for o in armatures if o == active] or animated
         if len(chosen) != 1:
+            _require_libraries(path)
             raise NoArmature(path.name)
     armature = _recorded(chosen[0])
     others = () if wanted else tuple(sorted(o.name for o in animated if o != armature))
     action = current_action(armature)
+    if action is None:
+        _require_libraries(path)
     take = "" if action is None else action.name
     return armature, Origin(path.name, chosen=ChosenTake(armature.name, take, others))
+
+
+def _require_libraries(path: Path) -> None:
+    """Where the open .blend lacks what was looked for. Raises UnreadableClip where that may be in a
+    file that it links and that is not there."""
+    import bpy
+
+    missing = [library.filepath for library in bpy.data.libraries if library.is_missing]
+    if missing:
+        problem = f"it links “{missing[0]}”, which is not there, and its motion may be in that"
+        raise UnreadableClip(str(path), None, problem)
 
 
 def _recorded(armature: bpy.types.Object) -> bpy.types.Object:

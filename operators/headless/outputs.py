@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...bridge.formats.paths import are_one_file
 from ...bridge.recipe.export import ExportOptions
 from ...bridge.recipe.keys import KeyOptions
 from ...bridge.recipe.loop import LoopOptions
@@ -54,9 +55,8 @@ ASIDE = 1.5  # m; how far the recording stands beside the adapted figure
 def require_apart(inputs: Iterable[Path], folder: Path, export: ExportOptions) -> None:
     """Before a solve takes its seconds. inputs: what a job reads. Raises WouldReplaceInput."""
     results = (_exported(folder, export), *(folder / name for name in NAMES))
-    there = [path for path in results if path.exists()]
-    for read, written in product(inputs, there):
-        if read.exists() and written.samefile(read):
+    for read, written in product(inputs, results):
+        if are_one_file(read, written):
             raise WouldReplaceInput(str(written))
 
 

@@ -96,6 +96,16 @@ def test_a_broken_file_fails(
     assert "cannot be read" in capsys.readouterr().out
 
 
+def test_folders_that_are_not_there_are_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        compared(tmp_path)
+    assert "cannot be read (No such file" in capsys.readouterr().err
+
+
 def test_nothing_to_compare_is_no_success(tmp_path: Path) -> None:
+    (tmp_path / "before").mkdir()
+    (tmp_path / "after").mkdir()
     result(tmp_path / "after")
     assert compared(tmp_path) == 1

@@ -89,6 +89,16 @@ def test_a_folder_that_cannot_be_read_refuses_the_batch(
     assert not library.out.exists()
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows tells no such file")
+def test_a_name_that_is_too_long_and_a_pipe_are_told_and_not_read(library: Library) -> None:
+    with pytest.raises(WrongPlan, match=r"cannot be read \(File name too long\)"):
+        find_clips([f"{'x' * 300}.bvh"], library.out)
+    pipe = library.folder / "pipe.bvh"
+    os.mkfifo(pipe)
+    with pytest.raises(WrongPlan, match=r"pipe.bvh is a pipe or a device"):
+        find_clips([str(pipe)], library.out)
+
+
 needs_links = pytest.mark.skipif(sys.platform == "win32", reason="links need rights on Windows")
 
 

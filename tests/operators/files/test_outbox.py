@@ -18,6 +18,12 @@ def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:
         pass
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows tells that there is no such folder")
+def test_a_folder_of_too_long_a_name_is_told_so(tmp_path: Path) -> None:
+    with pytest.raises(OutputNotWritable, match="too long"), Outbox(tmp_path / ("x" * 300) / "out"):
+        pass
+
+
 def test_a_failing_run_leaves_the_folder_as_it_was(tmp_path: Path) -> None:
     (tmp_path / "a.txt").write_text("old")
     with Outbox(tmp_path) as outbox:

@@ -153,7 +153,26 @@ def test_a_clip_that_is_no_clip(tmp_path: Path, capsys) -> None:
         assert name in one_line(capsys)
     (tmp_path / "bad.blend").write_bytes(b"not a blend")
     assert run(tmp_path, tmp_path / "bad.blend", EDIT) == 2
-    assert "bad.blend" in one_line(capsys)
+    assert "bad.blend: Blender cannot open it, as it is damaged" in one_line(capsys)
+    (tmp_path / "folder.fbx").mkdir()
+    assert run(tmp_path, tmp_path / "folder.fbx", EDIT) == 2
+    assert "folder.fbx cannot be opened (it is a folder)" in one_line(capsys)
+
+
+def test_a_scene_whose_armature_is_in_a_file_that_is_gone(tmp_path: Path, capsys) -> None:
+    library, scene = tmp_path / "rig.blend", tmp_path / "scene.blend"
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    rig = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))
+    bpy.data.libraries.write(str(library), {rig}, fake_user=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    with bpy.data.libraries.load(str(library), link=True) as (_, wanted):
+        wanted.objects = ["Rig"]
+    bpy.context.collection.objects.link(bpy.data.objects["Rig"])
+    bpy.ops.wm.save_as_mainfile(filepath=str(scene))
+    library.unlink()
+    assert run(tmp_path, scene, EDIT) == 2
+    said = capsys.readouterr().err.splitlines()[-1]
+    assert "rig.blend”, which is not there" in said
 
 
 @pytest.mark.slow
