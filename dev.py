@@ -107,7 +107,8 @@ def main(argv: list[str]) -> int:
     launcher = os.path.join(virtual_environment.ROOT, "devtools", "package.py")
     words = [env.python, launcher, module, *leading, *rest]
     if os.name == "posix":  # one process, so that whoever ends this one ends the command
-        sys.stdout.flush()
+        if sys.stdout is not None:  # as one that was closed from the start is
+            sys.stdout.flush()
         os.execve(env.python, words, variables)
     code = subprocess.call(words, env=variables)
     return code if code >= 0 else 128 - code  # a signal, the way shells count it

@@ -8,11 +8,11 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from io import TextIOWrapper
 from itertools import islice
 from pathlib import Path
 
 from ..operators.headless.explained import CANCELLED, WRONG_INPUT, ended_by_signals, explained
+from ..operators.terminal.outlasting import outlasting
 from ..solver.data.faults import Fault
 from ..solver.numerics.parallel import cores
 from .collect.collecting import collect
@@ -36,11 +36,9 @@ MOST_SPOILT = 5  # cells whose files are missing, by name, at the start
 WORST = (State.FAILED, State.WRONG_INPUT, State.NO_SOLUTION)
 
 
+@outlasting
 def run(argv: Sequence[str]) -> int:
     """Parses and runs; the exit code."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, TextIOWrapper):
-            stream.reconfigure(errors="replace")
     commands = parser()
     try:
         options, rest = commands.parse_known_args(_with_command(argv))

@@ -13,6 +13,7 @@ import os
 import shutil
 import sys
 import traceback
+from contextlib import suppress
 from pathlib import Path
 from types import ModuleType
 from typing import NoReturn
@@ -38,8 +39,10 @@ def load() -> ModuleType:
 
 def leave(code: int) -> NoReturn:
     """End the process at once: some versions of bpy crash or hang in an ordinary exit."""
-    sys.stdout.flush()
-    sys.stderr.flush()
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None:  # as one that was closed from the start is
+            with suppress(OSError):
+                stream.flush()
     bpy = sys.modules.get("bpy")
     if bpy is not None:
         shutil.rmtree(bpy.app.tempdir, ignore_errors=True)

@@ -5,7 +5,6 @@ import math
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, replace
-from io import TextIOWrapper
 from pathlib import Path
 
 from ...bridge.recipe.export import ExportOptions
@@ -19,6 +18,7 @@ from ...solver.data.problem import MotionProblem
 from ...solver.doctor.repairs import Repairs
 from ...solver.worker.pipeline import solve
 from ..files.outbox import Outbox, not_writable
+from ..terminal.outlasting import outlasting
 from ..terminal.stages import WIDTH, Stages
 from ..words.analysis_text import analysis_text, starter_recipe
 from ..words.report_text import gravity_lines
@@ -30,11 +30,9 @@ from .outputs import Outputs, linked_files, require_apart, require_exported, req
 from .result_files import every_name, result_lines
 
 
+@outlasting
 def run(argv: Sequence[str]) -> int:
     """Parses and runs; the exit code."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, TextIOWrapper):
-            stream.reconfigure(errors="replace")  # a terminal that lacks a sign still gets the rest
     try:
         options = parser().parse_args(argv)
     except SystemExit as end:  # argparse has said why
