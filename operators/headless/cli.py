@@ -1,6 +1,7 @@
 """The command line: `dev.py adapt …`, `blender --command hangtime adapt …` and the like.
 
-Exit codes: 0 done; 2 wrong input, in one sentence on the standard error; 3 no solution, likewise.
+Exit codes: 0 done; 2 wrong input, in one sentence on the standard error; 3 no solution, likewise;
+1 too little memory, likewise, or not all could be printed; 130 cancelled.
 """
 
 import os

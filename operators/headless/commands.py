@@ -25,9 +25,14 @@ from ..words.report_text import gravity_lines
 from .clip import Clip, LoadedClip, load
 from .doctor import examined, told, write_recipe_of
 from .doubts import doubts_about
-from .explained import CANCELLED, NO_SOLUTION, WRONG_INPUT, ended_by_signals, explained
+from .explained import CANCELLED, FAILED, NO_SOLUTION, WRONG_INPUT, ended_by_signals, explained
 from .outputs import Outputs, linked_files, require_apart, require_exported, require_place
 from .result_files import every_name, result_lines
+
+SCARCE = (
+    "There is too little memory for this, and nothing was written; end other programs, allow more, "
+    "or take fewer frames with --first and --last."
+)
 
 
 @outlasting
@@ -47,6 +52,9 @@ def run(argv: Sequence[str]) -> int:
     except KeyboardInterrupt:
         print("\nCancelled; nothing was written.", file=sys.stderr)
         return CANCELLED
+    except MemoryError:
+        print(SCARCE, file=sys.stderr)
+        return FAILED
     return 0
 
 

@@ -14,6 +14,7 @@ from ...bridge.recipe.problem import locate, read_recipe_text
 from ...solver.data.faults import BadRecipe, Fault, OffBalance, UnseenSupport
 from ..words.messages import recipe_place, sentence
 
+FAILED = 1  # by no fault of what was asked
 WRONG_INPUT = 2
 NO_SOLUTION = 3
 CANCELLED = 130

@@ -147,6 +147,18 @@ def test_a_truncated_clip_is_said_with_its_line(clip: Path, tmp_path: Path, caps
     assert not (tmp_path / "out").exists()
 
 
+def test_too_little_memory_is_told_and_leaves_nothing(
+    clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys
+) -> None:
+    def starved(*_: object) -> None:
+        raise MemoryError("Unable to allocate 14.4 MiB")
+
+    monkeypatch.setattr(commands, "solve", starved)
+    assert run(tmp_path, clip, EDIT) == 1
+    assert "too little memory" in one_line(capsys)
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_clip_that_is_no_clip(tmp_path: Path, capsys) -> None:
     for name in ("none.fbx", "none.blend", "none.txt"):
         assert run(tmp_path, tmp_path / name, EDIT) == 2
