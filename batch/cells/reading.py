@@ -72,7 +72,11 @@ def read_clip(
     axis = up or guess_up(clip)
     metres = unit or clip.unit or guess_unit(clip)
     guessed = unit is None and clip.unit is None
-    origin = Origin(path.name, metres, guessed, axis, up is None, miscount=clip.miscount)
+    origin = Origin(
+        *(path.name, metres, guessed, axis, up is None),
+        miscount=clip.miscount,
+        unmoved=clip.unmoved,
+    )
     recording = _by_depth(to_recording(replace(clip, name=path.stem), metres, axis))
     mend = repairs or Repairs()
     recording = filled(recording, mend.missing)

@@ -39,7 +39,7 @@ class ImportedClip:
     unit_m: m per unit of the file; of an FBX, whose units Blender converts itself, the factor
     applied after that. up: the file's axis that points up, None for an FBX, which tells it.
     miscount: frames that a BVH announces, and that it holds, where these are more. chosen: what of
-    an FBX was read, and what was not.
+    an FBX was read, and what was not. unmoved: bones of which an AMC says nothing.
     """
 
     armature: bpy.types.Object
@@ -49,6 +49,7 @@ class ImportedClip:
     up_guessed: bool
     miscount: tuple[int, int] | None = None
     chosen: ChosenTake | None = None
+    unmoved: tuple[str, ...] = ()
 
 
 def import_clip(
@@ -101,7 +102,9 @@ def _placed(
     armature = make(clip, metres / metres_per_unit(current_scene()), axis)
     _set_scene(clip)
     guessed = unit is None and clip.unit is None
-    return ImportedClip(armature, metres, guessed, axis, up is None, clip.miscount)
+    return ImportedClip(
+        armature, metres, guessed, axis, up is None, clip.miscount, unmoved=clip.unmoved
+    )
 
 
 def _import_bvh(path: Path, _: MotionClip, scale: float, up: UpAxis) -> bpy.types.Object:

@@ -97,6 +97,7 @@ def read_acclaim(
         matrices,
         1.0 / (USUAL_RATE if rate is None else rate),
         skeleton.unit,
+        unmoved=tuple(p.name for p in skeleton.parts if p.dof and p.name not in tables),
     )
 
 

@@ -49,6 +49,7 @@ class MotionClip:
     positions: (T, J, 3) each head in its parent's frame. rotations: (T, J, 3, 3) each joint's
     frame in its parent's. frame_time: s. unit: m per unit of length, None where the file is silent.
     miscount: frames that the file announces, and that it holds, where these are more.
+    unmoved: joints that the skeleton lets move, and that the motion says nothing of.
     """
 
     name: str
@@ -58,6 +59,7 @@ class MotionClip:
     frame_time: float
     unit: float | None = None
     miscount: tuple[int, int] | None = None
+    unmoved: tuple[str, ...] = ()
 
 
 def to_z_up(up: UpAxis) -> FloatArray:

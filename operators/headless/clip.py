@@ -159,6 +159,7 @@ def _import(clip: Clip) -> tuple[bpy.types.Object, Origin]:
         made.up_guessed,
         miscount=made.miscount,
         chosen=made.chosen,
+        unmoved=made.unmoved,
     )
 
 

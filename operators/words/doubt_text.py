@@ -118,8 +118,8 @@ def empty_doubts(left: Sequence[LeftEmpty]) -> list[str]:
 
 def file_doubts(origin: Origin) -> list[str]:
     """A line where a file holds more frames than its header announces, or than one armature and one
-    take."""
-    return [*_of_count(origin), *_of_choice(origin.clip, origin.chosen)]
+    take, or says nothing of a bone of its skeleton."""
+    return [*_of_count(origin), *_of_unmoved(origin), *_of_choice(origin.clip, origin.chosen)]
 
 
 def _of_count(origin: Origin) -> Iterator[str]:
@@ -129,6 +129,14 @@ def _of_count(origin: Origin) -> Iterator[str]:
             f"The header of {origin.clip} announces {announced} frames, but {held} lines of motion "
             f"follow, and all are read. Mend “Frames:” in the file, or leave out the last by "
             f"“trim_end = {held - announced}” under “[recording]” in the recipe"
+        )
+
+
+def _of_unmoved(origin: Origin) -> Iterator[str]:
+    if origin.unmoved:
+        yield (
+            f"{origin.clip} has no line of {_first_quoted(origin.unmoved)}, which its skeleton's "
+            "file lets move: held as at rest. Export it again where that is not meant"
         )
 
 

@@ -24,7 +24,8 @@ class Origin:
 
     unit_m: m per unit of length in the file. up: its axis that points up. bind_frames: at its
     beginning, which hold the rest pose and are left out. miscount: frames that the file
-    announces, and that it holds, where these are more. chosen: what of it is read.
+    announces, and that it holds, where these are more. chosen: what of it is read. unmoved:
+    bones that its skeleton lets move, and that it says nothing of.
     """
 
     clip: str
@@ -35,6 +36,7 @@ class Origin:
     bind_frames: int = 0
     miscount: tuple[int, int] | None = None
     chosen: ChosenTake | None = None
+    unmoved: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,9 @@ from hangtime.bridge.formats.motion_clip import (
 )
 from hangtime.bridge.formats.obj import UnreadableMesh, read_obj
 from hangtime.devtools.recordings import HOPS
+from hangtime.operators.words.doubt_text import file_doubts
 from hangtime.solver.data.faults import ClipNotOpened, NonFiniteKey, UnreadableClip
+from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.tests.helpers.clips import load_clip, load_recording
 
@@ -495,3 +497,13 @@ def test_a_rest_pose_whose_bones_all_follow_one_axis_tells_nothing() -> None:
         for joint in clip.joints
     )
     assert guess_up(replace(clip, joints=joints)) == "Y"
+
+
+def test_bones_of_which_a_motion_says_nothing_are_told(tmp_path: Path) -> None:
+    """One that its skeleton gives no freedom needs no line."""
+    silent = "".join(line for line in AMC.splitlines(True) if not line.startswith("head"))
+    assert read_acclaim(*acclaim_files(tmp_path, ASF, AMC)).unmoved == ()
+    clip = read_acclaim(*acclaim_files(tmp_path, ASF, silent))
+    assert clip.unmoved == ("head",)
+    (told,) = file_doubts(Origin("clip.amc", unmoved=clip.unmoved))
+    assert told.startswith("clip.amc has no line of “head”, which its skeleton's file lets move")
