@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from queue import SimpleQueue
+from tempfile import TemporaryDirectory
 from threading import Thread
 from typing import Any
 
@@ -20,6 +21,7 @@ from ..records.faults import BatchFault
 
 PROGRAM = Path(__file__).parents[2] / "solver" / "worker" / "program.py"
 MODULE = "batch.running.worker"  # what it runs
+TEMPORARY = ("TMPDIR", "TEMP", "TMP")  # by which systems tell where temporary files go
 _KEPT_LINES = 20
 _LAST_WORDS_S = 2.0
 
@@ -50,16 +52,30 @@ class WorkerProcess:
         news: SimpleQueue[tuple[WorkerProcess, Message | None]],
     ) -> None:
         try:
+            # it is killed in the end, and Blender's folder for temporary files would stay
+            self._scratch = TemporaryDirectory(prefix="hangtime_", ignore_cleanup_errors=True)
+        except OSError as error:
+            raise BatchFault(
+                f"There is no room for temporary files ({error.strerror}); name a folder that has "
+                "some by TMPDIR."
+            ) from error
+        try:
             self._popen = subprocess.Popen(
                 command,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
-                env={**os.environ, **ONE_CORE, **KEPT_MEMORY},
+                env={
+                    **os.environ,
+                    **ONE_CORE,
+                    **KEPT_MEMORY,
+                    **dict.fromkeys(TEMPORARY, self._scratch.name),
+                },
                 start_new_session=True,  # an interrupt is the parent's, who then ends it
                 creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
             )
         except OSError as error:
+            self._scratch.cleanup()
             raise BatchFault(f"{command[0]} cannot be started ({error.strerror}).") from error
         self.ready = False
         self.rss = 0
@@ -88,6 +104,7 @@ class WorkerProcess:
             assert pipe is not None
             with suppress(OSError):
                 pipe.close()
+        self._scratch.cleanup()
         said = [line for line in self._last_lines if line]
         how = f"by signal {-code}" if code < 0 else f"with code {code}"
         return f"{how}; {said[-1]}" if said else how

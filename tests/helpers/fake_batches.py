@@ -12,6 +12,7 @@ from __future__ import annotations
 import os
 import runpy
 import sys
+import tempfile
 import time
 from collections.abc import Mapping
 from pathlib import Path
@@ -85,6 +86,8 @@ def _solver(folder: Path) -> Any:
             os._exit(9)
         if text == "crash":
             raise ZeroDivisionError("by a fault of ours")
+        if text == "temporary":
+            log(f"temporary {tempfile.mkdtemp(prefix='blender_')}")
         if text == "fault":
             raise NoSolution(Status.STALLED)
         if text.startswith("sleep"):

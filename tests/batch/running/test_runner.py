@@ -7,6 +7,7 @@ import random
 import shutil
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from collections import Counter
@@ -44,6 +45,20 @@ def test_every_cell_gets_a_result_and_the_same_command_solves_none_again(tmp_pat
     run(folder)
     assert len(lines(folder, "begin")) == 7
     assert not [p.name for p in (folder / CELLS).iterdir() if p.name.startswith(".")]
+
+
+def test_temporary_files_of_workers_are_gone_with_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Workers are killed in the end, and cannot remove them."""
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(temporary))
+    planned(tmp_path, {"a.bvh": "temporary"})
+    run(tmp_path / "out")
+    (used,) = lines(tmp_path / "out", "temporary")
+    assert Path(used).is_relative_to(temporary)
+    assert not list(temporary.iterdir())
 
 
 @pytest.mark.slow
