@@ -10,6 +10,7 @@ from pathlib import Path
 from ..devtools.environment.problem import SetUpError
 from ..devtools.environment.virtual_environment import ROOT
 from ..devtools.recordings import HOPS, find
+from ..devtools.reports import report_options
 from .measure import Benchmark, Extent
 from .tables import Table, write_json
 
@@ -36,7 +37,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--limit", type=float, metavar="SECONDS", help="for each peer, else 60")
     parser.add_argument("--quick", action="store_true", help="10 s a peer, the quick ones")
     parser.add_argument("--write-docs", action="store_true", help="rewrite docs/benchmark.md")
-    options = parser.parse_args(argv)
+    options = report_options(parser, argv)
     try:
         find(HOPS)  # before anything is measured
     except SetUpError as problem:
@@ -47,7 +48,6 @@ def main(argv: list[str]) -> int:
     for table in Benchmark(extent).tables():
         tables.append(table)
         print(f"{table.text()}\n", flush=True)
-    options.out.mkdir(parents=True, exist_ok=True)
     path = options.out / "benchmark.json"
     write_json(tables, path)
     print(f"All of it, with every digit: {path}")

@@ -8,6 +8,7 @@ import argparse
 import os
 from pathlib import Path
 
+from ..reports import report_options
 from .families.all_families import FAMILIES, family_of
 from .protocol.case import CaseOutcome
 from .runner import run_cases
@@ -22,9 +23,8 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--family", help="cases of this family alone")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, metavar="J")
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
-    options = parser.parse_args(argv)
+    options = report_options(parser, argv)
     folder: Path = options.out.resolve()
-    folder.mkdir(parents=True, exist_ok=True)
     numbers = options.case or range(options.cases)
     every = [n for n in numbers if options.family in (None, family_of(n, options.seed).name)]
     outcomes = run_cases(every, options.seed, folder / "cases", options.jobs, tell)

@@ -21,6 +21,7 @@ from ...solver.skeleton.bind_pose import bind_frames
 from ..environment.virtual_environment import ROOT
 from ..figures.limits import WorstFigure
 from ..recordings import HELD, read
+from ..reports import report_options
 from .combined import ALONE_AND_COMBINED
 from .fits import LONGEST, FittedClip, fits, one_of_each_kind
 from .limits import figures, fit_figures
@@ -42,9 +43,8 @@ def main(argv: list[str]) -> int:
     parser.add_argument("folder", nargs="?", type=Path, default=HELD, metavar="FOLDER")
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
     parser.add_argument("--quick", action="store_true", help="two clips only")
-    options = parser.parse_args(argv)
+    options = report_options(parser, argv)
     chosen = [clip for clip in clips(options.folder) if not options.quick or clip[0] in QUICK]
-    options.out.mkdir(parents=True, exist_ok=True)
     if not chosen:
         parser.error(f"there is no clip to look at in {options.folder}")
     whole = options.folder == HELD and not options.quick

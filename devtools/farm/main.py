@@ -25,6 +25,7 @@ from ..batch_page.made_up import make_batch
 from ..batch_page.measure import measure_collecting, measure_page
 from ..environment.virtual_environment import ROOT
 from ..figures.limits import Figure, figure, table, write
+from ..reports import report_options
 from .cluster import running_cluster
 from .installed import unpacked_wheel
 from .kills import with_workers_killed
@@ -48,13 +49,12 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
     parser.add_argument("--quick", action="store_true", help="fewer cells, runs and kills")
     parser.add_argument("--tell", action="store_true", help="fail for no figure of time")
-    options = parser.parse_args(argv)
+    options = report_options(parser, argv)
     found: list[Figure] = []
     with tempfile.TemporaryDirectory() as scratch:
         for name, value in measured(Path(scratch), quick=options.quick):
             found.append(figure(name, value, "hops", "landing further", LIMITS))
             print(f"{name}: {value:.4g} {LIMITS[name].unit}", flush=True)
-    options.out.mkdir(parents=True, exist_ok=True)
     write(found, options.out / "figures.json")
     (options.out / "farm.md").write_text(markdown(found), encoding="utf-8")
     print(table(found, LIMITS))

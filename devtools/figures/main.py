@@ -27,6 +27,7 @@ from ..checks.mujoco_check import check_motion, check_npz
 from ..environment.problem import SetUpError
 from ..peers import ipopt_peer
 from ..peers.task import Task
+from ..reports import report_options
 from .blender import drifts, open_clip
 from .clips import CLIPS, EDITS, Clip
 from .limits import Figure, figure, table, write
@@ -45,7 +46,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
     parser.add_argument("--clip", metavar="WORD", help="only clips with this in their name")
     parser.add_argument("--no-peer", action="store_true", help="leave out IPOPT, which is slow")
-    options = parser.parse_args(argv)
+    options = report_options(parser, argv)
     chosen = [clip for clip in CLIPS if options.clip is None or options.clip in clip.name]
     if not chosen:
         print(f"No clip has '{options.clip}' in its name.")
@@ -56,7 +57,6 @@ def main(argv: list[str]) -> int:
         print(problem, file=sys.stderr)
         return 2
     figures = [f for clip in chosen for f in measure_clip(clip, peer=not options.no_peer)]
-    options.out.mkdir(parents=True, exist_ok=True)
     write(figures, options.out / "figures.json")
     print(table(figures))
     missed = [f for f in figures if not f.ok]

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from ...solver.data.faults import BadRecipe
 from ..environment.virtual_environment import ROOT
+from ..reports import report_options
 from .jobs import Effort, Json, Page, load, names, work, write_json
 from .limits import faults, figures, of_page
 from .scene_table import SCENE_HEAD, scene_section
@@ -28,7 +29,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--quick", action="store_true", help="the implicit solution alone")
     parser.add_argument("--once", action="store_true", help="solve once, not thrice for the clock")
     parser.add_argument("--scene", action="store_true", help="only those in a scene")
-    options = parser.parse_args(argv)
+    options = report_options(parser, argv)
     known = names(Page.SCENE) if options.scene else [*names(Page.THESIS), *names(Page.SCENE)]
     unknown = [name for name in options.names if name not in known]
     if unknown:

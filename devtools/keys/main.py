@@ -26,6 +26,7 @@ from ...solver.worker.stage_clock import StageClock
 from ..figures.blender import drift, open_clip
 from ..figures.clips import CLIPS, Clip
 from ..figures.limits import Figure, figure, table, write
+from ..reports import report_options
 from .limits import LIMITS, RATE, missed
 
 EDITS = {
@@ -41,14 +42,13 @@ def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="dev.py keys", description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
     parser.add_argument("--clip", metavar="WORD", help="only clips with this in their name")
-    options = parser.parse_args(argv)
+    options = report_options(parser, argv)
     found: list[Figure] = []
     for clip, edit in EDITS.items():
         if options.clip is None or options.clip in clip.name:
             for name, value in measured(clip, edit):
                 found.append(figure(name, value, clip.name, edit, LIMITS))
             print(f"{clip.name}, {edit}: measured", flush=True)
-    options.out.mkdir(parents=True, exist_ok=True)
     write(found, options.out / "figures.json")
     print(table(found, LIMITS))
     return 1 if missed(found) else 0

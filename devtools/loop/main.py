@@ -24,6 +24,7 @@ from ...solver.worker.pipeline import AdaptationResult, measure, solve
 from ...solver.worker.stage_clock import StageClock
 from ..figures.limits import Figure, figure, table, write
 from ..recordings import find
+from ..reports import report_options
 from .clips import RUNS, Run
 from .curves import picture
 from .limits import LIMITS
@@ -35,8 +36,7 @@ def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="dev.py loop", description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
     parser.add_argument("--clip", metavar="WORD", help="only clips with this in their name")
-    options = parser.parse_args(argv)
-    options.out.mkdir(parents=True, exist_ok=True)
+    options = report_options(parser, argv)
     found: list[Figure] = []
     for run in RUNS:
         if options.clip is None or options.clip in run.name:

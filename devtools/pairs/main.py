@@ -19,6 +19,7 @@ from ...solver.data.faults import Fault
 from ...solver.worker.pipeline import measure
 from ..environment.problem import SetUpError
 from ..environment.virtual_environment import ROOT
+from ..reports import report_options
 from .clips import Jump, broad_jumps, default_pairs, parse
 from .compare import ComparedPair, RecordedJump, compare
 from .jobs import SolvedJump, SolvedSource, SourceTask, solve_all
@@ -58,7 +59,6 @@ def main(argv: list[str]) -> int:
     ]
     distances = {name: float(jump.frame.landing[0]) for name, jump in recorded.items()}
     results = Results.of(solutions, pairs, distances, moved_landings(solved, solutions))
-    options.out.mkdir(parents=True, exist_ok=True)
     results.write(options.out / "figures.json")
     pictures = draw_some(results.moved(solutions[0]), recorded, solved, options.out)
     print(text(results))
@@ -81,7 +81,7 @@ def _options(argv: list[str]) -> argparse.Namespace:
         "--solutions", default=DEFAULT, metavar="A,B", help='methods, or objectives as "power"'
     )
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, metavar="N")
-    return parser.parse_args(argv)
+    return report_options(parser, argv)
 
 
 def record(jump: Jump) -> RecordedJump:

@@ -26,6 +26,7 @@ from ...solver.worker.stage_clock import StageClock
 from ..environment.virtual_environment import ROOT
 from ..pairs.clips import RATE, Jump, broad_jumps, hops
 from ..pairs.jump_frame import longest_flight
+from ..reports import report_options
 
 FAR = 0.3  # m
 STANDING = 0.15  # s after the clip's first frame
@@ -99,10 +100,9 @@ REACHES = tuple(
 def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="dev.py reach", description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
-    options = parser.parse_args(argv)
+    options = report_options(parser, argv)
     jumps = [jump for jump in (*broad_jumps(), *hops()) if jump.name in JUMPS]
     results = [result for jump in jumps for result in measured(jump)]
-    options.out.mkdir(parents=True, exist_ok=True)
     content = json.dumps([vars(each) for each in results], indent=1)
     (options.out / "reach.json").write_text(content + "\n", encoding="utf-8")
     table = "\n".join(rows(results))

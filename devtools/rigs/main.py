@@ -18,6 +18,7 @@ from pathlib import Path
 
 from ..environment.virtual_environment import ROOT
 from ..processes import run_module, undump
+from ..reports import report_options
 from .actor import JOINTS
 from .controlled import ControlResult, control_figures, control_line
 from .layout import layouts
@@ -40,7 +41,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("names", nargs="*", metavar="NAME", help="rigs to edit; default: all")
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
     parser.add_argument("--quick", action="store_true", help="the edit on two rigs only")
-    options = parser.parse_args(argv)
+    options = report_options(parser, argv)
     keys = [layout.key for layout in layouts()]
     unknown = [name for name in options.names if name not in (*keys, *CONTROLS)]
     if unknown:
@@ -108,7 +109,6 @@ def tell(
     1 where one is missed.
     """
     found = [*figures(results), *control_figures(controlled)]
-    out.mkdir(parents=True, exist_ok=True)
     content = {
         "figures": [{**asdict(f), "ok": f.ok} for f in found],
         "rigs": [*map(asdict, results)],

@@ -20,6 +20,7 @@ from ...solver.data.faults import BadRecipe
 from ..environment.problem import SetUpError
 from ..environment.virtual_environment import ROOT
 from ..processes import dump, run_module, undump
+from ..reports import report_options
 from .cases import CASES, QUICK, RESULTS, Case, cases, groups
 from .limits import figures
 from .result import CaseResult
@@ -36,7 +37,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("names", nargs="*", metavar="NAME", help="cases; default: all")
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
     parser.add_argument("--quick", action="store_true", help="a handful of cases, each timed once")
-    options = parser.parse_args(argv)
+    options = report_options(parser, argv)
     try:
         known = {case.name: case for case in cases()}
     except (SetUpError, BadRecipe, KeyError) as problem:
@@ -79,7 +80,6 @@ def tell(results: Sequence[CaseResult], out: Path, minutes: float, *, write_page
     1 where a miss is not a known one.
     """
     found = figures(results)
-    out.mkdir(parents=True, exist_ok=True)
     content = {"figures": [*map(asdict, found)], "cases": [*map(asdict, results)]}
     words = json.dumps(content, indent=1, ensure_ascii=False, default=attrgetter("value"))
     (out / "figures.json").write_text(words + "\n", encoding="utf-8")

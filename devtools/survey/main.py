@@ -18,6 +18,7 @@ from pathlib import Path
 from ..environment.problem import SetUpError
 from ..processes import run_module, undump
 from ..recordings import find
+from ..reports import report_options
 from .result import EditEnding, EditResult
 from .solve import RESULTS
 from .table import line, table
@@ -35,7 +36,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--edits", nargs="+", metavar="EDIT", help="kinds of edits; default: all")
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
     parser.add_argument("--quick", action="store_true", help="one jump, without limp legs")
-    options = parser.parse_args(argv)
+    options = report_options(parser, argv)
     wrong = [edit for edit in options.edits or () if edit not in edits()]
     if wrong:
         print(f"No edit '{wrong[0]}'; there are: {', '.join(edits())}.", file=sys.stderr)
@@ -88,7 +89,6 @@ def surveyed(clip: Path, names: Sequence[str]) -> tuple[list[EditResult], str | 
 
 def tell(results: Sequence[EditResult], failed: Sequence[str], seconds: float, out: Path) -> int:
     """Prints the table and writes survey.json; 1 where anything crashed, or nothing was edited."""
-    out.mkdir(parents=True, exist_ok=True)
     content = {"edits": [*map(asdict, results)], "failed": [*failed]}
     text = json.dumps(content, indent=1, ensure_ascii=False, default=attrgetter("value")) + "\n"
     (out / "survey.json").write_text(text, encoding="utf-8")

@@ -17,6 +17,7 @@ from pathlib import Path
 
 from ..environment.virtual_environment import ROOT
 from ..processes import run_module, undump
+from ..reports import report_options
 from .causes.vary import unknown
 from .limits import figures
 from .recorded import RECORDINGS
@@ -43,7 +44,7 @@ def main(argv: list[str]) -> int:
         "--vary", nargs="+", default=[], metavar="NAME=VALUE", help="constants with other values"
     )
     parser.add_argument("--page", action="store_true", help="write docs/validation.md anew")
-    options = parser.parse_args(argv)
+    options = report_options(parser, argv)
     trials = names(options.folder)
     known = [*trials, *RECORDINGS]
     chosen = options.only or known
@@ -59,7 +60,6 @@ def main(argv: list[str]) -> int:
     if options.vary and options.page:
         print("The page tells of the constants as they are; leave out --vary or --page.")
         return 2
-    options.out.mkdir(parents=True, exist_ok=True)
     curves = [] if options.no_curves else ["--curves"]
     said = [*curves, *options.vary]
     work = partial(solve, options.folder, options.out, options=said)

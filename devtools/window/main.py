@@ -18,6 +18,7 @@ from ..environment.problem import SetUpError
 from ..environment.virtual_environment import ROOT
 from ..figures.limits import table, write
 from ..recordings import HELD
+from ..reports import report_options
 from ..wheel import BuildError
 from .driving import manual_images
 from .results import LIMITS, RunRecord, figure_verdicts, figures_of, junit, scenario_verdicts
@@ -81,8 +82,7 @@ def main(argv: list[str]) -> int:
         "--manual", action="store_true", help="only renew the manual's pictures, in docs/images"
     )
     parser.add_argument("--prepare", action="store_true", help="only make the place it runs in")
-    options = parser.parse_args(argv)
-    options.out.mkdir(parents=True, exist_ok=True)
+    options = report_options(parser, argv)
     try:
         sandbox = prepare(options.suite)
         if options.prepare:
