@@ -1,6 +1,7 @@
 """A motion as sampled rigid bodies and forces, so that anybody can check its physics."""
 
 from dataclasses import replace
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -78,5 +79,6 @@ def save(motion: Motion, path: Path, rate: float = 1000.0) -> None:
 
     Not compressed: that takes a third as long as a short solve, for 15 % of the size.
     """
-    with path.open("wb") as file:
-        np.savez(file, **sample(motion, rate))
+    content = BytesIO()  # of a file that cannot be written to its end numpy complains once more
+    np.savez(content, **sample(motion, rate))
+    path.write_bytes(content.getbuffer())

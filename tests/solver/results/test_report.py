@@ -1,10 +1,12 @@
 """What is reported of a real hop, against the motion itself and against Newton."""
 
+import gc
 import json
 import math
 import re
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -263,6 +265,14 @@ def test_a_saved_trajectory_loads_without_pickles(tmp_path) -> None:
     with np.load(tmp_path / "trajectory.npz", allow_pickle=False) as saved:
         assert set(saved) == set(trajectory())
         assert len(saved["time"]) == len(instants(further().motion.duration, 50.0))
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs Linux")
+def test_a_full_disk_is_told_once() -> None:
+    """What Python complains of afterwards, which it cannot raise, fails a test."""
+    with pytest.raises(OSError, match="No space left"):
+        save(further().motion, Path("/dev/full"), rate=50.0)
+    gc.collect()
 
 
 def test_physics_that_fails_between_the_nodes_is_said() -> None:
