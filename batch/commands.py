@@ -272,8 +272,8 @@ def _planned(options: argparse.Namespace) -> Planned:
     asked = Asked(settings, options.clips, options.recipes, options.table)
     planned = plan(asked, options.out)
     cells = planned.manifest.cells
-    done = sum(_done(planned.manifest).values())
-    print(_told_size(cells) + (f"; {done} of them solved before" if done else "") + ".")
+    before = ", ".join(f"{n} {state.value}" for state, n in _done(planned.manifest).items())
+    print(_told_size(cells) + (f"; before: {before}" if before else "") + ".")
     if planned.spoilt:
         print(_told_spoilt(planned.spoilt))
     if planned.twice:

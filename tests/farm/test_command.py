@@ -19,7 +19,7 @@ def test_a_batch_is_run_on_dask_and_collected_by_one_command(tmp_path: Path, pac
     assert (folder / "index.html").is_file()
     again = subprocess.run([*words, "--dask", "tcp://127.0.0.1:9"], capture_output=True, text=True)
     assert again.returncode == 0  # nothing is left to be done, so nobody is asked
-    assert "3 of them solved before" in again.stdout
+    assert "; before: 3 done." in again.stdout
 
 
 def test_a_scheduler_that_is_not_there_is_wrong_input(tmp_path: Path, package: Path) -> None:

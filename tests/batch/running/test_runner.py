@@ -92,6 +92,9 @@ def test_the_end_tells_how_many_the_certificate_has_nothing_new_against(
     assert commands.run([str(tmp_path), *words, "--jobs", "1"]) == 3
     told = capsys.readouterr().out
     assert "In 1 of the 2 done no line of the certificate fails, or only as in the" in told
+    assert commands.run([str(tmp_path), *words, "--jobs", "1"]) == 3
+    again = capsys.readouterr().out
+    assert again.startswith("3 cells: 3 clips, 1 recipe; before: 2 done, 1 no solution.")
     table = (tmp_path / "out" / "table.csv").read_text(encoding="utf-8-sig")
     rows = {row["clip"]: row for row in csv.DictReader(table.splitlines())}
     worse = {clip: row["certificate_worse_than_recorded"] for clip, row in rows.items()}
