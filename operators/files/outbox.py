@@ -103,6 +103,17 @@ class Outbox:
         self._made = []
         return delivered
 
+    def clear(self, names: Iterable[str]) -> list[Path]:
+        """Removes files that are in the folder under these names, as those of an earlier result;
+        which ones. Raises OutputNotWritable."""
+        found = [path for path in (self.folder / name for name in names) if path.is_file()]
+        for path in found:
+            try:
+                path.unlink()
+            except OSError as error:
+                raise not_writable(path, error) from error
+        return found
+
     def _part(self, name: str) -> Path:
         return self.folder / f"{PART}{name}"
 

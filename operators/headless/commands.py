@@ -26,8 +26,8 @@ from .clip import Clip, LoadedClip, load
 from .doctor import examined, told, write_recipe_of
 from .doubts import doubts_about
 from .explained import CANCELLED, FAILED, NO_SOLUTION, WRONG_INPUT, ended_by_signals, explained
-from .outputs import Outputs, linked_files, require_apart, require_exported, require_place
-from .result_files import every_name, result_lines
+from .outputs import Outputs, linked_files, require_exported, require_place
+from .result_files import every_name, own_results, require_apart, result_lines
 
 SCARCE = (
     "There is too little memory for this, and nothing was written; end other programs, allow more, "
@@ -196,15 +196,23 @@ def adapt(options: argparse.Namespace) -> None:
         outputs = Outputs(loaded, wanted, keys, result, outbox, stages, recipe.loop, export)
         if result.fault is not None:
             outputs.write_failure()
-            outbox.deliver()
+            print(*_delivered(outbox, export), sep="\n")
             raise result.fault
         report = outputs.write(picture=not options.no_picture)
-        files = outbox.deliver()
+        files = _delivered(outbox, export)
     total = f"{'Total':<{WIDTH}}{stages.total:6.1f} s"
     told = result_lines(result, report, loaded.subject.analysis.unseen)
-    print(total, *told, "Written:", sep="\n")
-    for path in files:
-        print(f"  {path}")
+    print(total, *told, *files, sep="\n")
+
+
+def _delivered(outbox: Outbox, export: ExportOptions) -> list[str]:
+    """The files are in their places, and none of an earlier run is beside them; lines that tell of
+    it. Raises OutputNotWritable."""
+    written = outbox.deliver()
+    names = (path.name for path in own_results(outbox.folder, export))
+    older = outbox.clear(name for name in names if outbox.folder / name not in written)
+    lines = ["Written:", *(f"  {path}" for path in written)]
+    return lines + (["Removed, as of an earlier run:", *(f"  {p}" for p in older)] if older else [])
 
 
 def analyze(options: argparse.Namespace) -> None:

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...bridge.formats.paths import are_one_file
 from ...bridge.recipe.export import ExportOptions
 from ...bridge.recipe.keys import KeyOptions
 from ...bridge.recipe.loop import LoopOptions
 from ...bridge.recipe.result import ResultOptions, require_return_after, require_return_within
 from ...bridge.rows.choices import FileFormat, KeyChoice, LoopRoot, WrittenAs
-from ...solver.data.faults import OutputNotWritable, WouldReplaceInput
+from ...solver.data.faults import OutputNotWritable
 from ...solver.data.reports.keys import KeysReport
 from ...solver.data.reports.report import Report
 from ...solver.data.scaling import scaled_problem
@@ -30,9 +28,9 @@ from .result_files import (
     BEST,
     EXPORTED,
     FILM,
-    NAMES,
     PICTURE,
     SAVED,
+    exported,
     write_report,
     write_trajectory,
 )
@@ -52,14 +50,6 @@ if TYPE_CHECKING:  # as in clip.py
 ASIDE = 1.5  # m; how far the recording stands beside the adapted figure
 
 
-def require_apart(inputs: Iterable[Path], folder: Path, export: ExportOptions) -> None:
-    """Before a solve takes its seconds. inputs: what a job reads. Raises WouldReplaceInput."""
-    results = (_exported(folder, export), *(folder / name for name in NAMES))
-    for read, written in product(inputs, results):
-        if are_one_file(read, written):
-            raise WouldReplaceInput(str(written))
-
-
 def linked_files() -> tuple[Path, ...]:
     """What the scene in Blender is made from beside its own file: libraries, images."""
     import bpy
@@ -71,13 +61,7 @@ def require_exported(clip: LoadedClip, folder: Path, export: ExportOptions) -> N
     """Before a solve takes its seconds. Raises OutputNotWritable, SameUsdNames."""
     from ...bridge.exports.export import require_exportable
 
-    require_exportable(clip.armature, _exported(folder, export), export)
-
-
-def _exported(folder: Path, export: ExportOptions) -> Path:
-    from ...bridge.exports.engines import ENDINGS, format_of
-
-    return folder / f"{EXPORTED}{ENDINGS[format_of(export)]}"
+    require_exportable(clip.armature, exported(folder, export), export)
 
 
 def require_place(clip: LoadedClip, wanted: ResultOptions, loop: LoopOptions | None) -> None:

@@ -4,10 +4,14 @@ lines that a terminal shows of it."""
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import product
+from pathlib import Path
 from types import MappingProxyType
 
-from ...solver.data.faults import CarriedBy
+from ...bridge.formats.paths import are_one_file
+from ...bridge.recipe.export import ExportOptions
+from ...solver.data.faults import CarriedBy, WouldReplaceInput
 from ...solver.data.reports.report import Report, as_json
 from ...solver.results.npz_export import save
 from ...solver.results.unseen_support import hints_left
@@ -33,6 +37,26 @@ def every_name() -> tuple[str, ...]:
     from ...bridge.exports.engines import ENDINGS  # needs Blender
 
     return (*NAMES, *(f"{EXPORTED}{ending}" for ending in ENDINGS.values()))
+
+
+def exported(folder: Path, export: ExportOptions) -> Path:
+    """The file for others."""
+    from ...bridge.exports.engines import ENDINGS, format_of
+
+    return folder / f"{EXPORTED}{ENDINGS[format_of(export)]}"
+
+
+def require_apart(inputs: Iterable[Path], folder: Path, export: ExportOptions) -> None:
+    """Before a solve takes its seconds. inputs: what a job reads. Raises WouldReplaceInput."""
+    for read, written in product(inputs, own_results(folder, export)):
+        if are_one_file(read, written):
+            raise WouldReplaceInput(str(written))
+
+
+def own_results(folder: Path, export: ExportOptions) -> tuple[Path, ...]:
+    """The files that a job writes, or has taken away, as they are of an earlier one; a film
+    is a batch's."""
+    return (exported(folder, export), *(folder / name for name in NAMES if name != FILM))
 
 
 def write_trajectory(result: AdaptationResult, outbox: Outbox) -> None:

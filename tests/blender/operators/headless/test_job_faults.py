@@ -188,9 +188,16 @@ def test_a_scene_whose_armature_is_in_a_file_that_is_gone(tmp_path: Path, capsys
 
 
 @pytest.mark.slow
-def test_no_solution_leaves_a_report(clip: Path, tmp_path: Path, capsys) -> None:
+def test_no_solution_leaves_a_report_and_nothing_of_an_earlier_run(
+    clip: Path, tmp_path: Path, capsys
+) -> None:
+    (tmp_path / "out").mkdir()
+    for name in ("adapted.fbx", "trajectory.npz"):
+        (tmp_path / "out" / name).write_text("of an earlier run")
     assert run(tmp_path, clip, EDIT.replace("up = 0.2", "up = 8.0") + PLAIN) == 3
-    doubt, failure = capsys.readouterr().err.splitlines()
+    said = capsys.readouterr()
+    doubt, failure = said.err.splitlines()
+    assert "Removed, as of an earlier run:" in said.out
     assert "nobody jumps onto more than" in doubt
     assert "“Landing: " in failure
     written = {path.name for path in (tmp_path / "out").iterdir()}
