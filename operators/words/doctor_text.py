@@ -86,6 +86,8 @@ SENTENCES = {
 ADVICE = {
     FindingKind.JUMP: " Choose frames on one side of it.",
     FindingKind.LEAP: " Choose frames without it.",
+    FindingKind.IN_PLACE: " Export the recording again without “In Place”.",
+    FindingKind.SINKING: " Raise the foot, or the hips, there, or choose frames without it.",
     FindingKind.RETIMED: " Give it its own speed again, or choose frames without it.",
     FindingKind.LEVEL_HIPS: " Export the recording again with the hips' height.",
 }

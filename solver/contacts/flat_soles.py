@@ -15,21 +15,31 @@ from .force_timing import other_end
 from .point_movement import STEP
 
 FLAT = 0.015  # m, by which heel and toe of a sole that lies flat differ in height
+ALIKE = 0.02  # m, by which soles differ that lie on one thing
 LEAST_LYING = round(0.1 / STEP)  # instants
 
 
 def lying(above: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-    """(N,) m for each point, the height of its foot's sole where that lies flat, else NaN.
+    """(N,) m for each point, the height of its foot's sole where that lies flat, else NaN; of both
+    soles, where they lie side by side, the mean.
 
     above: (N,) m, heights of points above the ground, by name ("Left heel"); infinite where there
     is none.
     """
-    found = {}
     known = {name: np.where(np.isfinite(height), height, np.nan) for name, height in above.items()}
+    soles: dict[str, FloatArray] = {}
     for name, height in known.items():
         other = known.get(other_end(name), np.full(len(height), np.nan))
-        found[name] = np.where(np.abs(height - other) < FLAT, 0.5 * (height + other), np.nan)
-    return found
+        soles[name] = np.where(np.abs(height - other) < FLAT, 0.5 * (height + other), np.nan)
+    return {name: _together(name, soles) for name in soles}
+
+
+def _together(name: str, soles: Mapping[str, FloatArray]) -> FloatArray:
+    """(N,) m, of a sole and the other foot's, where that lies beside it, the mean."""
+    side = name.split()[0]
+    across = next((sole for other, sole in soles.items() if other.split()[0] != side), soles[name])
+    beside = np.abs(soles[name] - across) < ALIKE
+    return np.where(beside, 0.5 * (soles[name] + across), soles[name])
 
 
 def lies_elsewhere(heights: FloatArray) -> bool:

@@ -78,7 +78,7 @@ def falls_of(performance: Performance, trusted: Trusted = ALL) -> Falls | None:
 
 
 def each_fall(performance: Performance, trusted: Trusted = ALL) -> tuple[FloatArray, Spans]:
-    """(N, 2) accelerations downwards, m/s², and durations, s, of those that are trusted and are
+    """(N, 2) accelerations, m/s², and durations, s, of those that are trusted and are
     parabolas, and their scene frames."""
     up, height = in_the_air(performance), performance.character.height
     times, com, frames = performance.times, performance.com[:, 2], performance.recording.frames
@@ -92,7 +92,7 @@ def each_fall(performance: Performance, trusted: Trusted = ALL) -> tuple[FloatAr
         clock, path = times[first : last + 1] - times[first], com[first : last + 1]
         curve = np.polyfit(clock, path, 2)
         missed = float(np.sqrt(np.mean((path - np.polyval(curve, clock)) ** 2)))
-        fall = _acceleration(clock, path)
+        fall = _acceleration(clock, performance.com[first : last + 1])
         smooth = missed < min(ROUGH_BY * height, ROUGH * float(np.ptp(path)) + 5e-4)
         seconds = float(clock[-1])
         arc = fall * seconds**2 / 8.0  # the same at every clock
@@ -128,13 +128,15 @@ def _agreed(found: FloatArray, spans: Spans) -> Falls | None:
 
 
 def _acceleration(clock: FloatArray, path: FloatArray) -> float:
-    """M/s², downwards, of heights (T,), m, at instants (T,), s: minus the slope of the velocities.
+    """M/s², along a path (T, 3), m, at instants (T,), s: the slope of the velocities. Which way it
+    goes is no matter, as cameras are not always level.
 
     How far the centre of mass is from where it seems wanders slowly, as limbs move whose masses are
     not known: its steps are independent, not its places, which a parabola would take for so.
     """
     middles = 0.5 * (clock[1:] + clock[:-1])
-    return -float(np.polyfit(middles, np.diff(path) / np.diff(clock), 1)[0])
+    velocities = np.diff(path, axis=0) / np.diff(clock)[:, None]
+    return float(np.linalg.norm(np.polyfit(middles, velocities, 1)[0]))
 
 
 def person_factor(height: float) -> float:

@@ -1,8 +1,8 @@
 """Which way is down: whoever is in the air falls that way, whatever the floor below slopes like.
 
 A centre of mass in flight has the acceleration of gravity, also in its direction: 0.4 s of a flight
-tell the vertical to half a degree. What a flight is must not hang on a level floor then: it is
-where the acceleration stays as large and goes one way.
+tell the vertical to half a degree, at 24 frames a second to one. What a flight is must not hang on
+a level floor then: it is where the acceleration stays as large and goes one way.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from ..data.constants import STANDARD_GRAVITY
 from ..numerics.runs import runs
 
 WINDOW = 0.1  # s, of the parabolas by which acceleration is told from frame to frame
+FEWEST = 4  # frames, whose velocities have a slope and something that is off it
 SHORTEST = 0.3  # s; of shorter falls too much is in touch
 SIZES = (0.8, 1.25)  # of gravity, that of a fall by such a parabola
 LEANING = cos(radians(45.0))  # a figure has been stood up by then: the next axis is no nearer
@@ -26,6 +27,7 @@ ONE_WAY = sin(radians(25.0))  # of a fall's mean acceleration, that any of it mi
 # Of the slope, one standard deviation, by masses of limbs that are not known: as good as alike in
 # all falls of a figure. 0.4 s tell it to 0.4°, and shorter ones as velocities' slopes do.
 OFF, OFF_AT = radians(0.4), 0.4  # s
+SURE = 4.0  # times what it is unsure by, by which down is elsewhere: in clean clips up to 1.6
 ALIKE = 3.0  # times what a fall is unsure by, that it may miss the others; what sways does by more
 
 
@@ -37,6 +39,19 @@ class Plumb:
     slope: FloatArray
     unsure: float
     falls: int
+
+    @property
+    def is_sloping(self) -> bool:
+        """Whether down is surely not where the recording has it."""
+        return float(np.linalg.norm(self.slope)) > SURE * self.unsure
+
+    def is_along(self, slope: FloatArray) -> bool:
+        """Whether a floor of a slope (2,) is nearer to level by it than one that seems level."""
+        return float(np.linalg.norm(self.slope - slope)) < float(np.linalg.norm(self.slope))
+
+    def agrees(self, slope: FloatArray) -> bool:
+        """Whether a floor of a slope (2,) may be level by it."""
+        return float(np.linalg.norm(self.slope - slope)) < ALIKE * self.unsure
 
 
 def find_plumb(performance: Performance) -> Plumb | None:
@@ -51,7 +66,7 @@ def find_plumb(performance: Performance) -> Plumb | None:
     unsure = np.array([each.unsure for each in found])
     weights = unsure**-2
     mean = np.asarray(weights @ slopes / weights.sum())
-    if (np.linalg.norm(slopes - mean, axis=1) > ALIKE * unsure).any():
+    if not all(each.agrees(mean) for each in found):
         return None
     return Plumb(mean, max(float(weights.sum() ** -0.5), OFF), len(found))
 
@@ -76,13 +91,13 @@ def _falls(performance: Performance) -> list[slice]:
         for a, b in runs(near):
             # A parabola that is half in touch is none: the inner halves of the outer ones count.
             frames = slice(first + a + half // 2, first + b + 2 * half - half // 2 + 1)
-            if frames.stop - frames.start > SHORTEST * rate:
+            if frames.stop - frames.start > max(SHORTEST * rate, FEWEST):
                 found.append(frames)
     return found
 
 
 def _fall(performance: Performance, frames: slice) -> Plumb:
-    """What one of at least four frames tells: by the slope of velocities, whose errors are
+    """What one tells: by the slope of velocities, whose errors are
     independent, as those of places are not."""
     times, com = performance.times[frames], performance.com[frames]
     velocity = np.diff(com, axis=0) / np.diff(times)[:, None]

@@ -61,9 +61,9 @@ class Repairs:
     which becomes level. missing: frames that are put in, or taken out; all others of a recipe
     count with them.
     trim, trim_end: frames left out at the beginning and at the end of the whole clip. mend: of the
-    poses. time_scale, scale: factors of durations and of lengths. drift and rise: m/s, along the
-    floor and upwards, that are taken out, and floor: m, the height that becomes 0; all after the
-    factors.
+    poses, and of how the body stands. time_scale, scale: factors of durations and of lengths. drift
+    and rise: m/s, along the floor and upwards, that are taken out, and floor: m, the height that
+    becomes 0; all after the factors.
     """
 
     up: UpAxis = UpAxis.Z

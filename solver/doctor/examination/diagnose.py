@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, reduce
 
@@ -17,6 +17,7 @@ from ...data.faults import ClipTooShort, computable
 from ...data.recording import MIN_CLIP_DURATION, Recording, Skin
 from ...data.scaling import scaled_recording
 from ...data.scene import SceneObject
+from ...scene.support import StandingGround
 from ...skeleton.bind_pose import bind_frames, last_bind_frames
 from ..falls import FEWEST, LEAP_WINDOW, Spans, Trusted, find_leaps, person_factor
 from ..figure import figure_of
@@ -41,7 +42,7 @@ from ..stretch import CUTTING, Span, longest_stretch
 from ..upright import find_level_hips, find_up
 from .drifts import find_drifts
 from .ground import as_stood, beneath
-from .repair import placed_skin, repaired, taken_out
+from .repair import GROUNDING, placed_skin, repaired, taken_out
 from .scales import find_scales
 from .settled import Stance, joined_remedies, remedy_of, settled
 
@@ -164,6 +165,7 @@ def diagnose(
         told(0.65)
         return find_contacts(performance, scene)
 
+    rides = bool(StandingGround.of(-np.inf, scene, recording).carriers)
     trusted, seconds = _trusted(found, rate), float(recording.times[-1])
 
     def stood(repairs: Repairs) -> Performance:
@@ -179,9 +181,17 @@ def diagnose(
         return (tilt, *drifts) if tilt else tuple(drifts)
 
     def standing(placed: Repairs) -> Stance:
-        drifts = moved(placed)
+        drifts = offered(moved(placed))
         placed = placed.joined(joined_remedies(drifts))
-        return Stance(drifts, tuple(find_footing(stood(placed), touched(placed))))
+        return Stance(drifts, offered(find_footing(stood(placed), touched(placed))))
+
+    def offered(findings: Iterable[Finding]) -> tuple[Finding, ...]:
+        """Of who rides on something it is told how he stands there, but mended is how he does so
+        in the world: no remedy is offered that would take the ride for it."""
+        return tuple(
+            replace(f, remedy=None) if rides and GROUNDING & {*remedy_of(f).mend} else f
+            for f in findings
+        )
 
     def find_part(placed: Repairs) -> Finding | None:
         """A part that was retimed; where all is, none is told apart."""

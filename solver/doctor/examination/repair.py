@@ -9,12 +9,14 @@ import numpy as np
 
 from ...analysis.take import require_inside
 from ...arrays import FloatArray
+from ...body.character import stature
 from ...data.faults import NothingLeft
 from ...data.problem import Mend, MotionProblem
 from ...data.recording import Recording, Skin
 from ...data.scaling import scaled_recording
 from ...skeleton.bind_pose import bind_frames, last_bind_frames
 from ...skeleton.mirror import mirrored
+from ..falls import person_factor
 from ..figure import Figure, figure_of
 from ..frames.exchanges import exchanged_back
 from ..frames.flips import unflipped
@@ -106,13 +108,22 @@ def grounded(
     recording: Recording, mend: Collection[Mend], chosen: Mapping[str, str] | None
 ) -> Recording:
     """With its way along the floor, held to the ground, and lifted out of it, where these are
-    among what is to be mended. recording: in its right size and time, and without drift. Raises
-    MissingPart."""
-    if Mend.IN_PLACE in mend:
-        recording = with_its_way(recording, chosen)
-    if Mend.FLOATING in mend:
-        recording = held_to_the_ground(recording, figure_of(recording, chosen))
-    return lifted_out(recording, chosen) if Mend.SINKING in mend else recording
+    among what is to be mended; a single pose as it is. recording: in its right time, and without
+    drift. Raises MissingPart."""
+    wanted = [each for each in Mend if each in mend and each in GROUNDING]
+    if not wanted or len(recording.frames) < 2:
+        return recording
+    size = person_factor(stature(recording, chosen))  # limits in metres are those of persons
+    recording = scaled_recording(recording, size)
+    for each in wanted:
+        match each:
+            case Mend.IN_PLACE:
+                recording = with_its_way(recording, chosen)
+            case Mend.FLOATING:
+                recording = held_to_the_ground(recording, figure_of(recording, chosen))
+            case Mend.SINKING:
+                recording = lifted_out(recording, chosen)
+    return scaled_recording(recording, 1.0 / size)
 
 
 def _without_drift(

@@ -25,7 +25,7 @@ from .footing import DRIFT, LEAST_STANDING, LowestPoint, standing
 KEPT = 0.005  # m along the way, by which hips that keep their place leave it; nobody's stay so
 KEPT_SHARE = 0.1  # of the way that the feet tell: hips above a belt go to and fro by less
 LEAST_WAY = 0.3  # m that the feet tell
-FEW = 3  # frames in which something stands, before and after a flight
+BESIDE = 0.02  # s, of what stands before and after a flight: further off it pushes, or is braked
 STEP = 0.2  # s; from one place in which a foot slides to the next, told as one
 
 
@@ -84,13 +84,16 @@ def _way_of_the_ground(performance: Performance, stood: LowestPoint) -> FloatArr
     moving = np.gradient(performance.com[:, :2], times, axis=0)
     stands = np.searchsorted(times, stood.times)
     at, going = times[stands], moving[stands] - stood.velocities[:, :2]
+    steadily: list[FloatArray] = []
     for first, last in runs(in_the_air(performance)):
         before, after = np.searchsorted(stands, [first, last])
         if 0 < before == after < len(stands):
-            beside = going[max(before - FEW, 0) : before], going[after : after + FEW]
-            steady = 0.5 * (beside[0].mean(axis=0) + beside[1].mean(axis=0))
-            at = np.append(at, times[[first, last]])
-            going = np.vstack([going, steady, steady])
-    order = np.argsort(at, kind="stable")
+            leaves, lands = stood.times[before - 1], stood.times[after]
+            leaving = (stood.times <= leaves) & (stood.times > leaves - BESIDE)
+            landing = (stood.times >= lands) & (stood.times < lands + BESIDE)
+            steady = 0.5 * (going[leaving].mean(axis=0) + going[landing].mean(axis=0))
+            ends = 0.5 * (times[first] + leaves), 0.5 * (times[last] + lands)
+            at, steadily = np.append(at, ends), [*steadily, steady, steady]
+    order, going = np.argsort(at, kind="stable"), np.vstack([going, *steadily])
     body = [np.interp(times, at[order], going[order, axis]) for axis in (0, 1)]
     return np.asarray(cumulative_trapezoid(moving - np.transpose(body), times, axis=0, initial=0.0))

@@ -23,8 +23,8 @@ from .flat_feet import STANDING_SPEED_UP, foot_ends
 
 # Of clean clips up to 0.6°. Steps and boxes slope by 8° and more, but there nobody leans.
 LEAST, MOST = 0.7, 4.0  # °
-SURELY_TURNED = 4.0  # times what falls are unsure by: of clean clips 1.6
-LEANING = radians(3.0)  # by which who walks or runs on a level floor leans in the mean, or less
+LEANING = radians(3.5)  # in the mean, by which who moves on a level floor leans, or less
+SURELY_LEANS = 3.0  # times that, which nobody leans who stands; who seems to fall so also leans so
 # Falls are bent where the body sways, and several of them each otherwise; feet slide then, too.
 SEVERAL = 3
 STILL, LEAST_STANDING = 0.06, 0.2  # m/s, of the median stance of so many s
@@ -56,55 +56,64 @@ def find_tilt(performance: Performance, figure: Figure, beneath: Heights) -> Fin
     performance: in its right size and time. beneath: ground that is known, which may slope itself.
     """
     stances = list(_stances(performance.recording, figure, beneath))
+    plane = _Plane.through(stances) if len(stances) >= FEWEST else None
     plumb = find_plumb(performance)
-    found = _by_stances(stances, plumb, performance) if len(stances) >= FEWEST else None
-    if found is None and plumb is not None:
-        return _by_falls(stances, plumb)
-    return found
+    if plumb is None and plane is not None:
+        steep = plane.angle > MOST
+        return _by_lean(stances, plane, performance) if steep else _by_stances(stances, plane)
+    if plumb is None:
+        return None
+    along = plane is not None and plumb.is_along(plane.slope)
+    confirmed = along and plane is not None and plane.explains(stances)
+    if plumb.is_sloping and (confirmed or plumb.falls >= SEVERAL or _stand_still(stances)):
+        return _by_falls(stances, plumb, performance)
+    return _by_stances(stances, _Plane.through(stances, plumb)) if along else None
 
 
-def _by_stances(
-    stances: list[_Stance], plumb: Plumb | None, performance: Performance
-) -> Finding | None:
-    """What the places of three or more tell; falls may deny it. So may of a steep floor, if there
-    are none, how the body leans."""
-    plane = _Plane.through(stances)
-    if plumb is None and plane.angle > MOST:
-        plumb = _lean(stances, performance)
-    if plumb is not None:
-        if np.linalg.norm(plumb.slope) < np.linalg.norm(plumb.slope - plane.slope):
-            return None  # nearer to level
-        plane = _Plane.through(stances, plumb)
+def _by_stances(stances: list[_Stance], plane: _Plane) -> Finding | None:
+    """What the places of three or more tell."""
     off = plane.off(stances)
     if not LEAST < plane.angle < STEEPEST or off > OFF or not plane.explains(stances):
         return None
     rise, risen_off = _rise(stances, plane.apart)
-    tilted, risen = plane.level, Repairs(rise=rise)
+    risen = Repairs(rise=rise)
     if off < SURELY_RISES * risen_off:
         other = risen if risen_off < min(DOUBTFUL * off, LEFT * _uneven(stances)) else None
-        return Finding(FindingKind.TILTED, plane.angle, "°", remedy=tilted, alternative=other)
+        return replace(plane.finding, alternative=other)
     if off < DOUBTFUL * risen_off:
+        tilted = plane.finding.remedy
         return Finding(FindingKind.RISING, rise, "m/s", remedy=risen, alternative=tilted)
     return None
 
 
-def _by_falls(stances: list[_Stance], plumb: Plumb) -> Finding | None:
-    """What falls tell, where no level floor denies it; on boxes they tell it alone."""
-    surely = float(np.linalg.norm(plumb.slope)) > SURELY_TURNED * plumb.unsure
-    if not surely or not (plumb.falls >= SEVERAL or _stand_still(stances)):
+def _by_falls(stances: list[_Stance], plumb: Plumb, performance: Performance) -> Finding | None:
+    """What falls tell for sure, where no level floor denies it; with boxes they tell it alone. At
+    the end of a swing from a bar a body goes down as if it fell, but who stands does not lean."""
+    alone, level = _Plane(plumb.slope, 0.0, 0.0), _Plane(np.zeros(2), 0.0, 0.0)
+    plane = _Plane.through(stances, plumb) if stances else alone
+    if plane.off(stances) > OFF and level.off(stances) < OFF:
         return None
-    plane, level = _Plane.through(stances, plumb), _Plane(np.zeros(2), 0.0, 0.0)
-    if plane.off(stances) > OFF:
-        if level.off(stances) < OFF:
-            return None
-        plane = replace(plane, slope=plumb.slope)
-    if plane.angle > STEEPEST:
+    steep = float(np.linalg.norm(plumb.slope)) > SURELY_LEANS * LEANING
+    if steep and stances and not _lean(stances, performance).is_along(plumb.slope):
         return None
-    return Finding(FindingKind.TILTED, plane.angle, "°", remedy=plane.level)
+    boxes = plane.off(stances) > OFF or not plumb.agrees(plane.slope)
+    found = alone if boxes else plane
+    return found.finding if found.angle < STEEPEST else None
+
+
+def _by_lean(stances: list[_Stance], plane: _Plane, performance: Performance) -> Finding | None:
+    """What the places tell of a steep floor, along which the body leans."""
+    leaning = _lean(stances, performance)
+    found = _Plane.through(stances, leaning)
+    leans = float(np.linalg.norm(leaning.slope)) > leaning.unsure and leaning.is_along(plane.slope)
+    if not leans or not found.explains(stances) or found.angle > STEEPEST:
+        return None
+    return found.finding
 
 
 def _lean(stances: list[_Stance], performance: Performance) -> Plumb:
-    """Where down is, if the centre of mass is in the mean above the balls that stand."""
+    """Where down is, if the centre of mass is in the mean above the balls that stand: those of who
+    goes or runs are as far ahead of it as behind."""
     above = []
     for stance in stances:
         first = int(np.searchsorted(performance.times, stance.times[0]))
@@ -194,10 +203,10 @@ class _Plane:
         return degrees(atan(float(np.hypot(*self.slope))))
 
     @property
-    def level(self) -> Repairs:
-        """With which it is."""
+    def finding(self) -> Finding:
+        """With the remedy that makes it level."""
         x, y = (degrees(atan(each)) for each in self.slope.tolist())
-        return Repairs(tilt=(x, y))
+        return Finding(FindingKind.TILTED, self.angle, "°", remedy=Repairs(tilt=(x, y)))
 
     def explains(self, stances: list[_Stance]) -> bool:
         """Whether it is why heights differ, and not that feet are on things of their own. By what
@@ -209,6 +218,8 @@ class _Plane:
 
     def off(self, stances: list[_Stance]) -> float:
         """M, rms, by which all that stands misses it."""
+        if not stances:
+            return 0.0
         return float(np.std(np.concatenate([self._above(each, each.places) for each in stances])))
 
     def _above(self, stance: _Stance, places: FloatArray) -> FloatArray:

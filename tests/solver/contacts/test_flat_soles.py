@@ -1,5 +1,6 @@
 """A foot that stands flat does so with all of its sole, on the floor or on something else."""
 
+import pytest
 from hangtime.solver.analysis.performance import find_contacts, perform
 from hangtime.solver.body.character import build_character
 from hangtime.solver.data.contacts import ContactSchedule
@@ -26,3 +27,11 @@ def test_on_a_mat_no_foot_is_half_on_the_floor() -> None:
     assert all(contact.start > 1.0 for contact in off_it.contacts)
     assert [gap.end for gap in onto_it.unseen] == [onto_it.duration]
     assert [gap.start for gap in off_it.unseen] == [0.0]
+
+
+@pytest.mark.parametrize("metres", [0.038, 0.039, 0.04, 0.041, 0.042])
+def test_about_the_least_height_of_a_mat_both_feet_are_on_one_thing(metres: float) -> None:
+    """Soles are up to a centimetre apart: one foot stood, and the other on nothing."""
+    schedule = found(metres)
+    landed = {contact.point for contact in schedule.contacts if contact.start > 1.0}
+    assert len(landed) == (0 if schedule.unseen else 4)

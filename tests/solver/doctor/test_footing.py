@@ -19,10 +19,12 @@ from hangtime.devtools.doctor.measure import apart
 from hangtime.operators.words.messages import sentence
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.performance import find_contacts, perform
+from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import build_character
 from hangtime.solver.data.faults import UnseenSupport
 from hangtime.solver.data.problem import ContactEdit, Mend, MotionProblem
 from hangtime.solver.data.recording import Recording
+from hangtime.solver.data.scaling import scaled_recording
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.examination.repair import repaired
 from hangtime.solver.doctor.figure import figure_of
@@ -31,8 +33,10 @@ from hangtime.solver.doctor.repairs import Repairs
 from hangtime.solver.doctor.stance.feet import FootFault, FootFaultKind, find_feet
 from hangtime.solver.doctor.stance.footing import find_footing, find_rise, find_sliding
 from hangtime.solver.doctor.stance.in_place import find_in_place
+from hangtime.solver.doctor.stance.sinking import find_sinking, lifted_out
 from hangtime.tests.helpers.clips import JUMP, load_recording
-from hangtime.tests.helpers.doctored import character, figure, jump
+from hangtime.tests.helpers.doctored import character, figure, jump, sparse
+from hangtime.tests.helpers.moving import keyed
 
 
 @pytest.mark.parametrize(
@@ -264,16 +268,17 @@ def treadmill(recording: Recording) -> Recording:
     "name",
     ["forward_jump_116cm.bvh", pytest.param("fair1_jumping.bvh", marks=pytest.mark.slow)],
 )
-def test_a_jump_in_place_is_given_the_way_on_which_its_feet_stand(name: str) -> None:
+@pytest.mark.parametrize("every", [1, 4])
+def test_a_jump_in_place_is_given_the_way_on_which_its_feet_stand(name: str, every: int) -> None:
     """Its clock was told to be wrong, or nothing: what it does in flight the feet do not tell."""
-    original = load_recording(name)
+    original = sparse(load_recording(name), every)
     damaged = in_place().of(original).recording
     (told,) = (f for f in diagnose(damaged).findings if not f.kind.note)
     assert told.kind is FindingKind.IN_PLACE
     assert told.amount > 0.2
     given = repaired(damaged, told.remedy or Repairs())
-    assert apart(given, original) < 0.2 * apart(damaged, original)
-    assert FindingKind.IN_PLACE not in {f.kind for f in diagnose(given).findings}
+    assert apart(given, original) < 0.25 * apart(damaged, original)
+    assert not [f for f in diagnose(given).findings if not f.kind.note]
 
 
 @pytest.mark.parametrize("name", ["hops_in_place.bvh", "high_jump.bvh", "run_2.bvh"])
@@ -325,6 +330,49 @@ def test_feet_below_the_floor_for_a_moment_are_told_with_its_frames(seconds: flo
     lifted = repaired(damaged, found.remedy or Repairs())
     assert apart(lifted, jump()) < 0.5 * apart(damaged, jump())
     assert diagnose(lifted).findings == ()
+
+
+def test_where_one_foot_stands_the_body_is_not_lifted_for_the_other() -> None:
+    """Its leg is wrong, as of a pose that failed."""
+    parts = figure().sided
+    leg = [parts[part, Side.LEFT] for part in (Part.THIGH, Part.SHANK, Part.FOOT)]
+    toe = parts.get((Part.TOE, Side.LEFT))
+    sunk_leg = [*leg, *([toe] if toe is not None else [])]
+    depth = 0.1 * np.exp(-(((jump().times - jump().times[60]) / 0.1) ** 2))
+    heads = jump().heads.copy()
+    heads[:, sunk_leg, 2] -= depth[:, None]
+    leaning = replace(jump(), heads=heads)
+    found = find_sinking(perform(leaning, character()))
+    assert found is not None
+    assert found.remedy is None
+    assert lifted_out(leaning, None).heads == pytest.approx(heads)
+
+
+def test_of_who_rides_no_ride_is_mended() -> None:
+    """What sinks on a lift was told with a remedy that moved nothing."""
+    ridden, up = sunk(0.12, 0.2).of(jump()).recording, np.array([0.0, 0.0, 0.3])
+    frames = float(jump().frames[0]), jump().rate, float(jump().frames[-1])
+    lift = keyed(lambda t: (t * up, np.eye(3)), frames)
+    heads = ridden.heads + ridden.times[:, None, None] * up
+    told = diagnose(replace(ridden, heads=heads), scene=(lift,)).findings
+    (found,) = (f for f in told if f.kind is FindingKind.SINKING)
+    assert found.remedy is None
+
+
+@pytest.mark.parametrize("factor", [0.01, 0.1, 10.0])
+@pytest.mark.parametrize("mend", [Mend.IN_PLACE, Mend.FLOATING, Mend.SINKING])
+def test_what_stands_wrong_is_mended_in_any_size(mend: Mend, factor: float) -> None:
+    """Limits in metres are those of persons."""
+    wrong = sunk(0.12, 0.2).of(in_place().of(jump()).recording).recording
+    asked = Repairs(mend=(mend,))
+    one, other = repaired(wrong, asked), repaired(scaled_recording(wrong, factor), asked)
+    assert other.heads == pytest.approx(factor * one.heads, abs=1e-3 * factor)
+
+
+@pytest.mark.parametrize("mend", [Mend.IN_PLACE, Mend.FLOATING, Mend.SINKING])
+def test_a_single_pose_stays_as_it_is(mend: Mend) -> None:
+    pose = jump().part(slice(0, 1))
+    assert repaired(pose, Repairs(mend=(mend,))).heads == pytest.approx(pose.heads)
 
 
 @pytest.mark.parametrize("name", ["01_01.amc", "run_2.bvh", "hops_in_place.bvh"])

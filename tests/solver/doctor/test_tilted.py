@@ -58,6 +58,25 @@ def test_a_camera_may_be_far_off_the_level(recorded: Recording) -> None:
     assert apart(repaired(damaged.recording, diagnosis.repairs), damaged.original) < 0.01
 
 
+@pytest.mark.parametrize("clip", ["hops_in_place.bvh", "forward_jump_116cm.bvh"])
+def test_a_steep_slope_is_no_wrong_clock(clip: str) -> None:
+    """By how fast bodies fall downwards alone it was, from 26° on."""
+    damaged = tilted(28.0).of(load_recording(clip))
+    diagnosis = diagnose(damaged.recording)
+    told = {finding.kind for finding in diagnosis.findings if not finding.kind.note}
+    assert told == {FindingKind.TILTED}
+    assert apart(repaired(damaged.recording, diagnosis.repairs), damaged.original) < 0.01
+
+
+def test_where_no_ball_stands_falls_tell_the_slope_alone() -> None:
+    """It ended in a traceback."""
+    hops = tilted(6.0).of(load_recording("hops_in_place.bvh")).recording
+    away = hops.times[:, None, None] * np.array([1.0, 0.0, 0.0])
+    found = told(replace(hops, heads=hops.heads + away))
+    assert found is not None
+    assert found.amount == pytest.approx(6.0, abs=0.7)
+
+
 def test_who_jumps_on_a_box_falls_as_far_off_the_level() -> None:
     damaged = tilted(8.0).of(onto(0.3))
     found = told(damaged.recording)
