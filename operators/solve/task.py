@@ -12,11 +12,12 @@ from ...bridge.armature.incremental import at_once
 from ...bridge.repairs.unreadable import unreadable_texts
 from ...bridge.worker_client import shared
 from ...bridge.worker_requests import PendingRequest
-from ...solver.data.faults import Fault
+from ...solver.data.faults import Fault, UndoneMeanwhile
 from ...solver.worker.protocol import Failed, Progress
 from ..operator_types import OperatorResult
 from .common import FaultyOperator, ReadyOperator, chosen_armature, failed, said
 from .live import editors, redraw_viewports
+from .meanwhile.replaced import before_replaced, end_with
 from .session import session
 from .solving import SolveState, Solving
 
@@ -45,21 +46,39 @@ def answered(job: PendingRequest, kind: type[A]) -> Generator[PendingRequest, No
 def kept_in_scene(context: bpy.types.Context, task: Task) -> Task:
     """The same work in the context's scene and view layer, also while another scene is shown.
 
-    Raises ReferenceError where the scene is gone.
+    It ends before an undo frees what a part keeps for the next one; while a job is waited for,
+    tasks keep nothing but data-blocks, and go on. Raises ReferenceError where the scene is gone,
+    and UndoneMeanwhile.
     """
     scene, layer = present(context.scene).session_uid, present(context.view_layer).name
+    job: PendingRequest | float | None = None
+    undone: list[Fault] = []
+
+    def stop() -> None:
+        if not (undone or isinstance(job, PendingRequest)):
+            undone.append(UndoneMeanwhile())
+            with _in_scene_if_there(scene, layer):
+                end_with(task, undone[0])
+
     try:
-        while True:
-            with _in_scene(scene, layer):
-                try:
-                    job = next(task)
-                except StopIteration as end:
-                    return str(end.value)
-            yield job
+        with before_replaced(stop):
+            while True:
+                for fault in undone:
+                    raise fault
+                with _in_scene(scene, layer):
+                    try:
+                        job = next(task)
+                    except StopIteration as end:
+                        return str(end.value)
+                yield job
     finally:
-        there = any(each.session_uid == scene for each in bpy.data.scenes)
-        with _in_scene(scene, layer) if there else nullcontext():
+        with _in_scene_if_there(scene, layer):
             task.close()
+
+
+def _in_scene_if_there(uid: int, layer: str) -> AbstractContextManager[object]:
+    there = any(each.session_uid == uid for each in bpy.data.scenes)
+    return _in_scene(uid, layer) if there else nullcontext()
 
 
 def _in_scene(uid: int, layer: str) -> AbstractContextManager[object]:

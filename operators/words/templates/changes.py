@@ -37,4 +37,9 @@ CHANGES: dict[type[Fault], str | tuple[str, ...]] = {
     "removed while it was solved; undo that, and try again.",
     faults.EditedMeanwhile: "The result was thrown away, because the armature “{armature}” was in "
     "edit mode when it was to be written; leave edit mode, and try again.",
+    faults.UndoneMeanwhile: "The work was stopped, because something was undone or redone "
+    "meanwhile, and nothing of it is left; try again.",
+    faults.ActionGone: "The result was thrown away, because the action “{action}” was removed "
+    "while it was written, as File > Clean Up > Purge does; undo that if it was the recording's, "
+    "and try again.",
 }

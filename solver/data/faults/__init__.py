@@ -3,6 +3,7 @@
 from .base import Fault as Fault
 from .base import NameMissing as NameMissing
 from .base import RequestFault as RequestFault
+from .changes import ActionGone as ActionGone
 from .changes import ArmatureGone as ArmatureGone
 from .changes import ChangedMeanwhile as ChangedMeanwhile
 from .changes import EditedMeanwhile as EditedMeanwhile
@@ -10,6 +11,7 @@ from .changes import LostEdits as LostEdits
 from .changes import RateChanged as RateChanged
 from .changes import SpanChanged as SpanChanged
 from .changes import TimeStretched as TimeStretched
+from .changes import UndoneMeanwhile as UndoneMeanwhile
 from .loops import CycleClimbs as CycleClimbs
 from .loops import CycleTurns as CycleTurns
 from .loops import EndsTouchOtherwise as EndsTouchOtherwise

@@ -67,3 +67,16 @@ class EditedMeanwhile(Fault):
     """The armature is in edit mode as its result is to be written, when no bone can be posed."""
 
     armature: str
+
+
+@dataclass
+class UndoneMeanwhile(Fault):
+    """Something was undone or redone, or another file opened, while the scene was read or written
+    in parts."""
+
+
+@dataclass
+class ActionGone(Fault):
+    """An action was removed while a result was written: the recording's, or the result itself."""
+
+    action: str

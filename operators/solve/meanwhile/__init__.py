@@ -1,0 +1,1 @@
+"""What others do to the scene between two parts of a task."""
