@@ -30,7 +30,7 @@ _TOLD = {  # by Blender: of the frame that is shown, and of the slots that an ac
 }
 _DIGITS = 3  # Blender units, and of axes, which going in and out of edit mode turns by 1e-6
 
-BONES, KEYS = "its bones", "its keys"
+BONES, KEYS, PLACE = "its bones", "its keys", "its place"
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def _placed(now: Conditions, then: Conditions) -> tuple[str, ...]:
     """In words, how an armature is placed otherwise than it was; another size moves it, too."""
     if now.resized(then):
         return ("its scale or the scene's unit scale",)
-    return ("its place",) if now.moved(then) else ()
+    return (PLACE,) if now.moved(then) else ()
 
 
 def _digest(part: object) -> str:

@@ -2,17 +2,14 @@
 
 import bpy
 
-from ...bridge.accessors import armature_data, current_action, present, source_of
+from ...bridge.accessors import current_action, present, source_of
 from ...bridge.action_slots import lost_slot
 from ...bridge.armature.actions import recorded_action, show
 from ...bridge.armature.played import why_no_action
-from ...bridge.armature.strips import remove_strips, strips_of
-from ...bridge.fake_users import unguard
+from ...bridge.armature.strips import strips_of
 from ...bridge.libraries import lost_file
 from ...bridge.properties.settings import action_settings, settings_of
-from ...bridge.scene.played_end import play_what_is_left
 from ...bridge.takes.takes import bake_shown, results_from, unphysical_since
-from ...bridge.takes.write_result import remove_slot
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
 from .common import (
@@ -25,6 +22,7 @@ from .common import (
     tweaked,
     why_no_armature,
 )
+from .meanwhile.removal import remove_result
 from .session import session
 
 NOTHING_ADAPTED = "Nothing has been adapted yet"
@@ -243,39 +241,10 @@ class DiscardOperator(_OfSettledResult, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature, result = required_armature(context), required_result(context)
-        settings, recorded, name = settings_of(armature), source_of(result), result.name
-        performer = performer_of(armature)
-        if settings.source == result:
-            settings.source = None
-        if performer != armature:
-            _remove_performer(context, performer, armature)
-        for each in bpy.data.objects:  # a linked copy may perform it, too
-            if current_action(each) == result:
-                show(each, recorded)
-            remove_strips(each, result)
-        remove_slot(result)
-        bpy.data.actions.remove(result)
-        play_what_is_left(armature)
-        if recorded is not None and not results_from(recorded):
-            unguard(recorded)
-        settings.adapted = None  # the edit at work is no other result's
-        settings.status = ""
+        name = result.name
+        remove_result(armature, result)
         self.report({"INFO"}, f"Discarded {name}")
         return {"FINISHED"}
-
-
-def _remove_performer(
-    context: bpy.types.Context, performer: bpy.types.Object, armature: bpy.types.Object
-) -> None:
-    """Remove an armature that was made to perform a result; where it was active, the one that the
-    result was made for is."""
-    objects, bones = present(context.view_layer).objects, armature_data(performer)
-    was_active = objects.active == performer
-    bpy.data.objects.remove(performer)
-    if bones.users == 0:
-        bpy.data.armatures.remove(bones)
-    if was_active and armature.name in objects:
-        objects.active = armature
 
 
 class ShowReportOperator(_OfResult, bpy.types.Operator):

@@ -75,6 +75,7 @@ from ..words.take_text import (
 )
 from ..words.warning_text import warnings_of
 from .keys import mark_contacts, write_keys
+from .meanwhile.undisturbed import undisturbed
 from .scene import note_surfaces, stale_surfaces
 from .session import Asked, session
 from .solving import SolveState
@@ -110,7 +111,7 @@ OTHERS_HIDDEN = (
 
 def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
     """Writes an answer as a new action; returns how it went. Raises RateChanged,
-    ChangedMeanwhile, ArmatureGone, EditedMeanwhile, ReturnTooEarly.
+    ChangedMeanwhile, ArmatureGone, EditedMeanwhile, ActionGone, ReturnTooEarly.
 
     Surfaces that changed meanwhile do not void it: it says that it is not about them any more.
     """
@@ -118,6 +119,13 @@ def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
     armature = yield from _unchanged(asked)
     stale = yield from stale_surfaces(asked, armature)
     session().advance(SolveState.WRITING)
+    return (yield from undisturbed(armature, _write(asked, answer, armature, stale)))
+
+
+def _write(
+    asked: Asked, answer: Adapted, armature: bpy.types.Object, stale: tuple[str, ...]
+) -> Incremental[str]:
+    """The answer as a result, and all that is told of it."""
     if asked.problem.requests.body.limbs:
         done = yield from _write_other(asked, answer, armature)
     else:
@@ -193,6 +201,9 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         _tell_unmet(armature, action, answer.track)
         for _ in finishing:  # not "yield from", which would close it with what it is part of
             yield None
+    except (Fault, ReferenceError):  # by which the result goes
+        finishing.close()
+        raise
     finally:
         complete(finishing)  # cancelled, the result has a key on every frame
     return f"Wrote the {FORMS[options.written_as]} {action.name}"

@@ -1,0 +1,162 @@
+"""A result that is written in parts, or not at all.
+
+The window in which the work began lets no event through meanwhile (`Solving.passes`); but a second
+window, or another extension's timer, may rename, delete and edit between two parts.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import TypeVar
+
+import bpy
+import numpy as np
+
+from ....bridge.accessors import armature_data, current_action
+from ....bridge.armature import fcurves
+from ....bridge.armature.actions import recorded_action, show
+from ....bridge.armature.incremental import Incremental
+from ....bridge.properties.settings import settings_of
+from ....bridge.repairs.analysed_state import BONES, PLACE
+from ....bridge.scene.surfaces_digest import Conditions
+from ....solver.arrays import FloatArray
+from ....solver.data.faults import (
+    ActionGone,
+    ArmatureGone,
+    ChangedMeanwhile,
+    EditedMeanwhile,
+    Fault,
+    RateChanged,
+)
+from .removal import remove_result
+from .replaced import end_with
+
+T = TypeVar("T")
+
+_SAME = 1e-3  # Blender units, and of axes, which going in and out of edit mode turns by 1e-6
+
+
+def undisturbed(armature: bpy.types.Object, writing: Incremental[T]) -> Incremental[T]:
+    """The same work, which makes a result of an armature; where it ends with a fault, the armature
+    shows what it showed, and what was made is gone.
+
+    Raises as that does, and, where something came in between, ArmatureGone, EditedMeanwhile,
+    ChangedMeanwhile, RateChanged, ActionGone.
+    """
+    shown, needed = _Shown.by(armature), _Needed(armature)
+    try:
+        while True:
+            needed.require()
+            before = _actions()
+            try:
+                part = next(writing)
+            except StopIteration as end:
+                result: T = end.value
+                return result
+            needed.note_made(before)
+            yield part
+    except (Fault, ReferenceError) as why:
+        end_with(writing, why)
+        shown.restore(needed.made)
+        raise
+    finally:
+        with suppress(ReferenceError):
+            writing.close()
+
+
+@dataclass(frozen=True)
+class _Shown:
+    """What an armature showed before a result of it was written."""
+
+    armature: bpy.types.Object
+    action: bpy.types.Action | None
+    slot: str | None
+    adapted: bpy.types.Action | None
+    status: str
+
+    @staticmethod
+    def by(armature: bpy.types.Object) -> _Shown:
+        settings, slot = settings_of(armature), fcurves.slot_identifier(armature)
+        shown = current_action(armature)
+        return _Shown(armature, shown, slot, settings.adapted, settings.status)
+
+    def restore(self, made: frozenset[int]) -> None:
+        """Remove the actions of these numbers as far as they are left, whoever shows them."""
+        with suppress(ReferenceError):  # of what was shown something is gone, too
+            self._show_again(made)
+        for each in [each for each in bpy.data.actions if each.session_uid in made]:
+            bpy.data.actions.remove(each)
+
+    def _show_again(self, made: frozenset[int]) -> None:
+        settings = settings_of(self.armature)
+        result = settings.adapted
+        if result == self.adapted and current_action(self.armature) is not None:
+            return  # nothing else was shown yet
+        if result is not None and result.session_uid in made:
+            remove_result(self.armature, result)
+        settings.status, settings.adapted = self.status, self.adapted
+        show(self.armature, self.action, self.slot)
+
+
+class _Needed:
+    """What each part takes for granted of what the one before left: the armature, with its bones,
+    where it was, the recording's action, and those that were made. made: their numbers."""
+
+    def __init__(self, armature: bpy.types.Object) -> None:
+        self._armature, self._name = armature, armature.name
+        self._bones, self._conditions = _bones(armature), Conditions.of(armature)
+        source = recorded_action(armature)
+        self._source = {} if source is None else {source.session_uid: source.name}
+        self._made: dict[int, str] = {}
+
+    @property
+    def made(self) -> frozenset[int]:
+        return frozenset(self._made)
+
+    def note_made(self, before: dict[int, str]) -> None:
+        """A part has ended. before: actions that there were before it, by their numbers."""
+        now = _actions()
+        new = {uid: name for uid, name in now.items() if uid not in before}
+        kept = {uid: name for uid, name in self._made.items() if uid in now}
+        self._made = kept | new
+
+    def require(self) -> None:
+        """Raises ArmatureGone, EditedMeanwhile, ChangedMeanwhile, RateChanged, ActionGone."""
+        armature = self._armature
+        try:
+            there, edited = bool(armature.users_scene), armature.mode == "EDIT"
+        except ReferenceError:
+            there = edited = False
+        if not there:
+            raise ArmatureGone(self._name)
+        if edited:
+            raise EditedMeanwhile(self._name)
+        actions = _actions()
+        for uid, name in (self._source | self._made).items():
+            if uid not in actions:
+                raise ActionGone(name)
+        self._require_as_before(armature)
+
+    def _require_as_before(self, armature: bpy.types.Object) -> None:
+        (names, rest), now = _bones(armature), Conditions.of(armature)
+        if names != self._bones[0] or not np.allclose(rest, self._bones[1], rtol=0.0, atol=_SAME):
+            raise ChangedMeanwhile(self._name, while_solving=True, changed=(BONES,))
+        before = self._conditions
+        if now.replayed(before):
+            raise RateChanged(before.rate, now.rate, while_solving=True)
+        if now.resized(before) or now.moved(before):
+            raise ChangedMeanwhile(self._name, while_solving=True, changed=(PLACE,))
+
+
+def _bones(armature: bpy.types.Object) -> tuple[list[str], FloatArray]:
+    """Names, and where they are at rest, (16 n,)."""
+    bones = armature_data(armature).bones
+    rest = np.empty(16 * len(bones), np.float32)
+    bones.foreach_get("matrix_local", rest)
+    return [each.name for each in bones], rest.astype(float)
+
+
+def _actions() -> dict[int, str]:
+    """Names of all actions by their numbers in this session."""
+    return {each.session_uid: each.name for each in bpy.data.actions}
