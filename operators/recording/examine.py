@@ -27,6 +27,8 @@ from ..names import OperatorId
 from ..solve.adapt import read_wanted
 from ..solve.common import required_armature, said
 from ..solve.live import redraw
+from ..solve.meanwhile.standing import Kept
+from ..solve.meanwhile.steady import steady
 from ..solve.scene import read_bound, read_surfaces
 from ..solve.session import session
 from ..solve.solving import SolveState, Solving
@@ -53,7 +55,10 @@ class ExamineOperator(TaskOperator, bpy.types.Operator):
 
     def task(self, context: bpy.types.Context) -> Task:
         armature = required_armature(context)
-        settings = settings_of(armature)
+        return (yield from steady(armature, self._examined(context, armature)))
+
+    def _examined(self, context: bpy.types.Context, armature: bpy.types.Object) -> Task:
+        kept, settings = Kept.of(armature), settings_of(armature)
         recording = yield from read_wanted(armature)
         self._tell_of_range(settings, recording)
         dead = require_keyed(armature)
@@ -80,10 +85,12 @@ class ExamineOperator(TaskOperator, bpy.types.Operator):
             skin=skin,
             scene=scene.objects,
         )
+        whole = shown_range(armature, present(recorded_action(armature)))
         job = shared().ask(RequestKind.EXAMINE, recording, problem, repairs)
         answer = yield from answered(job, Examined)
         yield None
-        whole = shown_range(armature, present(recorded_action(armature)))
+        armature = kept.found()
+        settings = settings_of(armature)
         diagnosis = answer.diagnosis.counted_in(whole, recording.ends)
         write_diagnosis(armature, diagnosis, answer.feet)
         scene_settings(context.scene).armature = armature

@@ -66,6 +66,7 @@ from ..words.request_doubt_text import whole_turn_doubts
 from .common import chosen_armature, hindrance, quick_solution, refined_solution, required_armature
 from .keys import key_options
 from .live import live
+from .meanwhile.steady import steady
 from .scene import read_bound, read_surfaces
 from .session import Asked, session
 from .solving import SolveState
@@ -200,9 +201,13 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
 
     Raises any Fault of reading and of a rig that cannot be written to, AimedBone, ReturnTooEarly,
     ReturnTooLate, NoNewSlot, and RateChanged, SpanChanged or ChangedMeanwhile where it is not what
-    was analysed.
+    was analysed, and ChangedWhileRead.
     """
     armature = required_armature(context)
+    return (yield from steady(armature, _ask_for(armature)))
+
+
+def _ask_for(armature: bpy.types.Object) -> Incremental[Asked]:
     settings = settings_of(armature)
     recording = yield from read_wanted(armature)
     _require_analysed(armature, recording)

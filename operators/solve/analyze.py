@@ -67,6 +67,8 @@ from .common import (
     required_armature,
     said,
 )
+from .meanwhile.standing import Kept
+from .meanwhile.steady import steady
 from .scene import read_bound, read_surfaces
 from .session import session
 from .solving import SolveState
@@ -176,9 +178,16 @@ class AnalysisOutcome:
 def analysis(
     context: bpy.types.Context,
 ) -> Generator[PendingRequest | float | None, None, AnalysisOutcome]:
-    """Finds contacts, and keeps them with the armature. Raises any Fault of a recording."""
+    """Finds contacts, and keeps them with the armature. Raises any Fault of a recording,
+    ChangedWhileRead, ArmatureGone."""
     armature = required_armature(context)
-    settings = settings_of(armature)
+    return (yield from steady(armature, _analysis(context, armature)))
+
+
+def _analysis(
+    context: bpy.types.Context, armature: bpy.types.Object
+) -> Generator[PendingRequest | float | None, None, AnalysisOutcome]:
+    kept, settings = Kept.of(armature), settings_of(armature)
     recording = yield from read_wanted(armature)
     yield None
     bind = _leave_out_bind_pose(settings, recording)
@@ -195,21 +204,24 @@ def analysis(
     for missing in missing_parts(settings):
         raise MissingPart(missing)
     bound = yield from read_bound(armature, recording.frames)
-    asked = partial(problem_of, settings, skin=bound.skin, with_contacts=False)
-    problem = asked(recording)
+    asked = partial(problem_of, skin=bound.skin, with_contacts=False)
+    problem = asked(settings, recording)
     yield from require_writable(armature, recording, span_of(settings, recording))
     yield None
     session().advance(SolveState.SOLVING)
     session().support = None
-    answer = yield from _analysed(armature, recording, problem)
+    answer = yield from _analysed(kept, recording, problem)
     for _ in range(MOST_SNAPS):
         if answer.cycle is None or answer.cycle.as_asked:
             break
-        _take_cycle(settings, answer.cycle)
-        recording = yield from read_wanted(armature)
+        armature = kept.found()
+        _take_cycle(settings_of(armature), answer.cycle)
+        recording = yield from steady(armature, read_wanted(armature))
         state, stood = AnalysedState.of(armature), armature.matrix_world.copy()
-        problem = asked(recording)
-        answer = yield from _analysed(armature, recording, problem)
+        problem = asked(settings_of(armature), recording)
+        answer = yield from _analysed(kept, recording, problem)
+    armature = kept.found()
+    settings = settings_of(armature)
     contacts, flights = len(answer.schedule.contacts), len(answer.schedule.flights)
     factor = answer.odd_size
     odd = None if factor is None else OddHeight(armature.name, answer.height, factor)
@@ -322,17 +334,18 @@ def _is_carried(answer: Analysed) -> bool:
 
 
 def _analysed(
-    armature: bpy.types.Object, recording: Recording, problem: MotionProblem
+    kept: Kept, recording: Recording, problem: MotionProblem
 ) -> Generator[PendingRequest | float | None, None, Analysed]:
     """The analysis; in the scene where without it something unseen carries the body, or a floor
     that moves.
 
-    Raises any Fault of an analysis, and of reading the scene.
+    kept: whose it is. Raises any Fault of an analysis, and of reading the scene.
     """
     found = yield from answered(_ask(recording, problem), Analysed)
     if not _is_carried(found):
         return found
-    scene = yield from read_surfaces(armature, recording.frames)
+    armature = kept.found()
+    scene = yield from steady(armature, read_surfaces(armature, recording.frames))
     if not any(thing.role is SceneRole.GROUND for thing in scene.objects):
         return found
     problem = replace(problem, scene=scene.objects)
@@ -353,12 +366,12 @@ class FitOperator(TaskOperator, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     def task(self, context: bpy.types.Context) -> Task:
-        armature = required_armature(context)
+        kept = Kept.of(required_armature(context))
         asked = yield from ask_for(context)
         session().advance(SolveState.SOLVING)
         job = shared().ask(RequestKind.FIT, asked.recording, asked.problem)
         answer = yield from answered(job, Fitted)
-        settings_of(armature).fit_quality = quality(answer.quality, answer.needs)
+        settings_of(kept.found()).fit_quality = quality(answer.quality, answer.needs)
         return f"Fitted in {answer.seconds:.1f} s: {in_words(answer.quality, answer.needs)}"
 
 

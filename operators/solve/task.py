@@ -47,8 +47,8 @@ def kept_in_scene(context: bpy.types.Context, task: Task) -> Task:
     """The same work in the context's scene and view layer, also while another scene is shown.
 
     It ends before an undo frees what a part keeps for the next one; while a job is waited for,
-    tasks keep nothing but data-blocks, and go on. Raises ReferenceError where the scene is gone,
-    and UndoneMeanwhile.
+    tasks keep no curves, bones and settings, and go on. Raises ReferenceError where the scene is
+    gone, and UndoneMeanwhile.
     """
     scene, layer = present(context.scene).session_uid, present(context.view_layer).name
     job: PendingRequest | float | None = None

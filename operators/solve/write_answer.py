@@ -53,7 +53,6 @@ from ...bridge.takes.write_result import (
 from ...solver.body.character import build_character
 from ...solver.body.proportions import changed_recording
 from ...solver.data.faults import (
-    ArmatureGone,
     ChangedMeanwhile,
     EditedMeanwhile,
     Fault,
@@ -75,6 +74,8 @@ from ..words.take_text import (
 )
 from ..words.warning_text import warnings_of
 from .keys import mark_contacts, write_keys
+from .meanwhile.standing import Kept
+from .meanwhile.steady import steady
 from .meanwhile.undisturbed import undisturbed
 from .scene import note_surfaces, stale_surfaces
 from .session import Asked, session
@@ -111,13 +112,14 @@ OTHERS_HIDDEN = (
 
 def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
     """Writes an answer as a new action; returns how it went. Raises RateChanged,
-    ChangedMeanwhile, ArmatureGone, EditedMeanwhile, ActionGone, ReturnTooEarly.
+    ChangedMeanwhile, ArmatureGone, EditedMeanwhile, ActionGone, ReturnTooEarly,
+    ChangedWhileRead.
 
     Surfaces that changed meanwhile do not void it: it says that it is not about them any more.
     """
     session().advance(SolveState.CHECKING)
     armature = yield from _unchanged(asked)
-    stale = yield from stale_surfaces(asked, armature)
+    stale = yield from steady(armature, stale_surfaces(asked, armature))
     session().advance(SolveState.WRITING)
     return (yield from undisturbed(armature, _write(asked, answer, armature, stale)))
 
@@ -373,17 +375,14 @@ def _unchanged(asked: Asked) -> Incremental[bpy.types.Object]:
     before, rate = asked.recording.rate, frames_per_second(current_scene())
     if not isclose(before, rate, rel_tol=SAME_RATE):
         raise RateChanged(before, rate, while_solving=True)
-    # What was deleted is in the file until that is saved, but in no scene.
-    there = (each for each in bpy.data.objects if each.users_scene)
-    armature = next((each for each in there if each.session_uid == asked.uid), None)
-    if armature is None:
-        raise ArmatureGone(asked.armature)
+    armature = Kept(asked.uid, asked.armature).found()
     if armature.mode == "EDIT":
         raise EditedMeanwhile(armature.name)
     if recorded_action(armature) is not None:
         frames = asked.recording.frames
         try:
-            now = yield from read_recorded_incrementally(armature, frames[0], frames[-1])
+            reading = read_recorded_incrementally(armature, frames[0], frames[-1])
+            now = yield from steady(armature, reading)
         except Fault as fault:  # another action, a scale: whatever it is, it is new
             raise _changed(asked, armature) from fault
         if same_motion(replace(now, times=asked.recording.times), asked.recording):

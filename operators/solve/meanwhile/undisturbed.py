@@ -11,30 +11,23 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 import bpy
-import numpy as np
 
-from ....bridge.accessors import armature_data, current_action
+from ....bridge.accessors import current_action
 from ....bridge.armature import fcurves
 from ....bridge.armature.actions import recorded_action, show
 from ....bridge.armature.incremental import Incremental
 from ....bridge.properties.settings import settings_of
-from ....bridge.repairs.analysed_state import BONES, PLACE
-from ....bridge.scene.surfaces_digest import Conditions
-from ....solver.arrays import FloatArray
 from ....solver.data.faults import (
     ActionGone,
-    ArmatureGone,
     ChangedMeanwhile,
     EditedMeanwhile,
     Fault,
-    RateChanged,
 )
 from .removal import remove_result
 from .replaced import end_with
+from .standing import EDITED, Kept, Standing
 
 T = TypeVar("T")
-
-_SAME = 1e-3  # Blender units, and of axes, which going in and out of edit mode turns by 1e-6
 
 
 def undisturbed(armature: bpy.types.Object, writing: Incremental[T]) -> Incremental[T]:
@@ -42,20 +35,20 @@ def undisturbed(armature: bpy.types.Object, writing: Incremental[T]) -> Incremen
     shows what it showed, and what was made is gone.
 
     Raises as that does, and, where something came in between, ArmatureGone, EditedMeanwhile,
-    ChangedMeanwhile, RateChanged, ActionGone.
+    ChangedMeanwhile, ActionGone.
     """
     shown, needed = _Shown.by(armature), _Needed(armature)
     try:
         while True:
-            needed.require()
             before = _actions()
             try:
                 part = next(writing)
             except StopIteration as end:
                 result: T = end.value
                 return result
-            needed.note_made(before)
+            needed.note(before)
             yield part
+            needed.require()
     except (Fault, ReferenceError) as why:
         end_with(writing, why)
         shown.restore(needed.made)
@@ -100,12 +93,11 @@ class _Shown:
 
 
 class _Needed:
-    """What each part takes for granted of what the one before left: the armature, with its bones,
-    where it was, the recording's action, and those that were made. made: their numbers."""
+    """What each part takes for granted of what the one before left: the armature as it stood, the
+    recording's action, and those that were made. made: their numbers."""
 
     def __init__(self, armature: bpy.types.Object) -> None:
-        self._armature, self._name = armature, armature.name
-        self._bones, self._conditions = _bones(armature), Conditions.of(armature)
+        self._kept, self._standing = Kept.of(armature), Standing.of(armature)
         source = recorded_action(armature)
         self._source = {} if source is None else {source.session_uid: source.name}
         self._made: dict[int, str] = {}
@@ -114,47 +106,24 @@ class _Needed:
     def made(self) -> frozenset[int]:
         return frozenset(self._made)
 
-    def note_made(self, before: dict[int, str]) -> None:
+    def note(self, before: dict[int, str]) -> None:
         """A part has ended. before: actions that there were before it, by their numbers."""
-        now = _actions()
+        self._standing, now = Standing.of(self._kept.found()), _actions()
         new = {uid: name for uid, name in now.items() if uid not in before}
         kept = {uid: name for uid, name in self._made.items() if uid in now}
         self._made = kept | new
 
     def require(self) -> None:
-        """Raises ArmatureGone, EditedMeanwhile, ChangedMeanwhile, RateChanged, ActionGone."""
-        armature = self._armature
-        try:
-            there, edited = bool(armature.users_scene), armature.mode == "EDIT"
-        except ReferenceError:
-            there = edited = False
-        if not there:
-            raise ArmatureGone(self._name)
-        if edited:
-            raise EditedMeanwhile(self._name)
-        actions = _actions()
+        """Raises ArmatureGone, EditedMeanwhile, ChangedMeanwhile, ActionGone."""
+        armature, actions = self._kept.found(), _actions()
         for uid, name in (self._source | self._made).items():
             if uid not in actions:
                 raise ActionGone(name)
-        self._require_as_before(armature)
-
-    def _require_as_before(self, armature: bpy.types.Object) -> None:
-        (names, rest), now = _bones(armature), Conditions.of(armature)
-        if names != self._bones[0] or not np.allclose(rest, self._bones[1], rtol=0.0, atol=_SAME):
-            raise ChangedMeanwhile(self._name, while_solving=True, changed=(BONES,))
-        before = self._conditions
-        if now.replayed(before):
-            raise RateChanged(before.rate, now.rate, while_solving=True)
-        if now.resized(before) or now.moved(before):
-            raise ChangedMeanwhile(self._name, while_solving=True, changed=(PLACE,))
-
-
-def _bones(armature: bpy.types.Object) -> tuple[list[str], FloatArray]:
-    """Names, and where they are at rest, (16 n,)."""
-    bones = armature_data(armature).bones
-    rest = np.empty(16 * len(bones), np.float32)
-    bones.foreach_get("matrix_local", rest)
-    return [each.name for each in bones], rest.astype(float)
+        changed = Standing.of(armature).since(self._standing)
+        if EDITED in changed:
+            raise EditedMeanwhile(armature.name)
+        if changed:
+            raise ChangedMeanwhile(armature.name, while_solving=True, changed=changed)
 
 
 def _actions() -> dict[int, str]:

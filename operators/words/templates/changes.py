@@ -42,4 +42,6 @@ CHANGES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.ActionGone: "The result was thrown away, because the action “{action}” was removed "
     "while it was written, as File > Clean Up > Purge does; undo that if it was the recording's, "
     "and try again.",
+    faults.ChangedWhileRead: "Nothing was done, because the armature “{armature}” changed while it "
+    "was read ({changed:names}); try again, in object or pose mode.",
 }

@@ -6,6 +6,7 @@ from .base import RequestFault as RequestFault
 from .changes import ActionGone as ActionGone
 from .changes import ArmatureGone as ArmatureGone
 from .changes import ChangedMeanwhile as ChangedMeanwhile
+from .changes import ChangedWhileRead as ChangedWhileRead
 from .changes import EditedMeanwhile as EditedMeanwhile
 from .changes import LostEdits as LostEdits
 from .changes import RateChanged as RateChanged

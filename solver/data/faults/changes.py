@@ -80,3 +80,14 @@ class ActionGone(Fault):
     """An action was removed while a result was written: the recording's, or the result itself."""
 
     action: str
+
+
+@dataclass
+class ChangedWhileRead(Fault):
+    """The armature changed while it was read in parts, of which the first are others than the last.
+
+    changed: what of it, in words.
+    """
+
+    armature: str
+    changed: tuple[str, ...]

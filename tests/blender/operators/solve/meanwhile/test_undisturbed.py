@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,8 +23,15 @@ from hangtime.operators.solve.write_answer import write_answer
 from hangtime.solver.data.faults import Fault
 from hangtime.solver.worker.protocol import Adapted, RequestKind
 from hangtime.tests.blender.conftest import opened
+from hangtime.tests.blender.operators.solve.meanwhile.changes import (
+    edit,
+    purge,
+    remove,
+    rename,
+    undo,
+)
 
-pytestmark = pytest.mark.usefixtures("_enabled")
+pytestmark = pytest.mark.usefixtures("_enabled", "_solving")
 
 Solved = tuple[Asked, Adapted]
 
@@ -48,37 +55,6 @@ def armature(_adapted_file: Path) -> bpy.types.Object:
     for count in range(2):  # an undo goes back to the first
         bpy.ops.ed.undo_push(message=f"{count}")
     return armature
-
-
-@pytest.fixture(autouse=True)
-def _ended() -> Iterator[None]:
-    yield
-    session().solving = None
-    if bpy.context.mode != "OBJECT":
-        bpy.ops.object.mode_set(mode="OBJECT")
-
-
-def purge(_armature: bpy.types.Object) -> None:
-    bpy.ops.outliner.orphans_purge(do_recursive=True)
-
-
-def edit(_armature: bpy.types.Object) -> None:
-    bpy.ops.object.mode_set(mode="EDIT")
-
-
-def rename(armature: bpy.types.Object) -> None:
-    armature.data.bones["LeftFoot"].name = "Left"
-
-
-def remove(armature: bpy.types.Object) -> None:
-    bpy.data.objects.remove(armature)
-
-
-def undo(_armature: bpy.types.Object) -> None:
-    window = bpy.data.window_managers[0].windows[0]
-    area = window.screen.areas[0]
-    with bpy.context.temp_override(window=window, screen=window.screen, area=area):
-        bpy.ops.ed.undo()
 
 
 def _begun(armature: bpy.types.Object, solved: Solved, until: Callable[[], bool]) -> Task:
