@@ -40,14 +40,16 @@ CHECKING, WRITING = 0.9, 0.95  # shares of the whole at which these begin
 class Solving:
     """A solve under way. Whoever runs it tells what happens; what cannot happen now raises
     ValueError, for it would be a mistake of ours. of, label: the operator that runs it, and what
-    its button says. analysed: what an analysis found is written, and more is to come. reads: the
-    share of the whole that reading the recording is."""
+    its button says. analysed: what an analysis found is written, and more is to come. written: the
+    result is shown, and is looked at and finished. reads: the share of the whole that reading the
+    recording is."""
 
     of: str = ""
     state: SolveState = SolveState.READING
     progress: Progress | None = None
     label: str = "The work"
     analysed: bool = False
+    written: bool = False
     reads: float = 0.05
     _part: float = 0.0  # of the current state
 
@@ -88,7 +90,7 @@ class Solving:
     @property
     def has_result(self) -> bool:
         """Whether what it has changed stays when it is ended: a step to undo."""
-        return self.analysed or self.state is SolveState.PREPARING
+        return self.analysed or self.written or self.state is SolveState.PREPARING
 
     @property
     def cancelled(self) -> str:
@@ -96,6 +98,8 @@ class Solving:
         if self.state is SolveState.PREPARING:
             return f"{self.state.value.capitalize()} was cancelled; what {self.label} found is kept"
         left = "the new contacts are kept" if self.analysed else "nothing was changed"
+        if self.written:
+            left = "the result is kept as it is"
         return f"{self.label} was cancelled while {self.doing}; {left}"
 
     @property

@@ -172,6 +172,7 @@ class TaskOperator(ReadyOperator, FaultyOperator):
             self._finish(end.value)
             return {"FINISHED"}
         except Fault as fault:
+            self._solving.written = False  # a result goes with its fault
             # the report vanishes when the mouse moves
             failure = session().failure = failed(fault, self._uid, type(self).bl_idname)
             # An error's pop-up would hide the panel, which says more.

@@ -176,6 +176,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         touching=answer.schedule.bones,
     )
     action, written = yield from write_adapted_incrementally(armature, motion)
+    present(session().solving).written = True
     keep(action, answer.traces, stood)
     told = take_lines(written, roles(settings_of(armature)))
     if options.written_as is WrittenAs.SLOT and options.markers is ContactMarkers.ACTION:
@@ -334,6 +335,7 @@ def _write_other(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> I
     derive(action, source, armature)
     bpy.data.actions.remove(scaffold)
     settings_of(armature).adapted = action
+    present(session().solving).written = True
     keep(action, answer.traces, armature.matrix_world)
     options = asked.result
     left_out = [] if options.after is After.CUT else [ALONE.format(other.name)]

@@ -237,6 +237,7 @@ def test_a_result_that_is_cancelled_while_it_is_finished_is_whole(
         while not begun:
             next(writing)
         writing.close()
+        assert "the result is kept" in session().solving.cancelled
     finally:
         session().solving = None
     assert begun == [True]

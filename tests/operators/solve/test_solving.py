@@ -58,6 +58,14 @@ def test_who_cancels_an_update_after_its_analysis_hears_that_the_new_contacts_st
     assert under_way.has_result  # which is a step that can be undone
 
 
+def test_who_cancels_once_the_result_is_shown_hears_that_it_stays() -> None:
+    under_way = Solving(label="Adapt", state=SolveState.WRITING)
+    assert under_way.cancelled.endswith("writing keyframes; nothing was changed")
+    under_way.written = True
+    assert under_way.cancelled.endswith("writing keyframes; the result is kept as it is")
+    assert under_way.has_result
+
+
 def test_after_an_analysis_it_says_what_is_made_ready() -> None:
     under_way = solving()
     under_way.advance(SolveState.PREPARING)
