@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
 
 from ...analysis.performance import Performance, contact_points, perform
 from ...arrays import BoolArray, FloatArray
@@ -96,4 +95,6 @@ def _way_of_the_ground(performance: Performance, stood: LowestPoint) -> FloatArr
             at, steadily = np.append(at, ends), [*steadily, steady, steady]
     order, going = np.argsort(at, kind="stable"), np.vstack([going, *steadily])
     body = [np.interp(times, at[order], going[order, axis]) for axis in (0, 1)]
-    return np.asarray(cumulative_trapezoid(moving - np.transpose(body), times, axis=0, initial=0.0))
+    over = moving - np.transpose(body)
+    steps = 0.5 * (over[1:] + over[:-1]) * np.diff(times)[:, None]
+    return np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
