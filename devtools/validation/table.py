@@ -40,7 +40,7 @@ any folder in the same format will do.
 - **Recordings**: jumps and runs of `examples/recordings` without force plates, of which the motion
   alone is judged.
 
-**Constants.** Those of contact detection (`PointKind`, `analysis/force_timing.py`) were set on the
+**Constants.** Those of contact detection (`PointKind`, `contacts/force_timing.py`) were set on the
 trials Subject4 and run200 and on the walk; some of them on recordings without plates
 (`forward_jump_*`, `fair1_jumping`). Those of the fit (`FIT_COST_WEIGHTS`, `SMOOTHING_TIME`,
 `LEVEL_SMOOTHING_TIME`, `SOLE_COMPLIANCE`, `SINKING_TIME`, `EDGE_SPAN`) were set on Subject4_DJ1,
