@@ -22,6 +22,7 @@ FEWEST = 6  # frames of a fall
 SHORTEST = 0.06  # s, at the recording's own clock, or as much as that many frames
 ROUGH = 0.03  # of the fall's height, rms, by which it may miss a parabola, and
 ROUGH_BY = 0.002  # of the figure's height, than which its arc is higher: a straight way misses less
+DOWNWARDS = 0.7  # of a fall's acceleration; a camera 45° off the level has it upright
 OFF = 0.12  # of a scale of time; a run's short flights are 5 % off in honest recordings
 SURE = 2.0  # times a fall's uncertainty; clean clips from 30 Hz on are within 1.1
 USUAL_NEAR, PRECISE_FALL = 0.035, 0.35  # a fall of 0.35 s tells the rate to 3.5 %, half of it 7 %
@@ -92,11 +93,12 @@ def each_fall(performance: Performance, trusted: Trusted = ALL) -> tuple[FloatAr
         clock, path = times[first : last + 1] - times[first], com[first : last + 1]
         curve = np.polyfit(clock, path, 2)
         missed = float(np.sqrt(np.mean((path - np.polyval(curve, clock)) ** 2)))
-        fall = _acceleration(clock, performance.com[first : last + 1])
+        acceleration = _acceleration(clock, performance.com[first : last + 1])
+        fall = float(np.linalg.norm(acceleration))  # whichever way: cameras are not always level
         smooth = missed < min(ROUGH_BY * height, ROUGH * float(np.ptp(path)) + 5e-4)
         seconds = float(clock[-1])
         arc = fall * seconds**2 / 8.0  # the same at every clock
-        if curve[0] < 0.0 and arc > ROUGH_BY * height and smooth:
+        if -acceleration[2] > DOWNWARDS * fall and arc > ROUGH_BY * height and smooth:
             found.append((fall, seconds))
             spans.append(span)
     return np.array(found).reshape(-1, 2), tuple(spans)
@@ -127,16 +129,15 @@ def _agreed(found: FloatArray, spans: Spans) -> Falls | None:
     return Falls(mean, float(durations[alike].max()), frames)
 
 
-def _acceleration(clock: FloatArray, path: FloatArray) -> float:
-    """M/s², along a path (T, 3), m, at instants (T,), s: the slope of the velocities. Which way it
-    goes is no matter, as cameras are not always level.
+def _acceleration(clock: FloatArray, path: FloatArray) -> FloatArray:
+    """(3,) m/s², along a path (T, 3), m, at instants (T,), s: the slope of the velocities.
 
     How far the centre of mass is from where it seems wanders slowly, as limbs move whose masses are
     not known: its steps are independent, not its places, which a parabola would take for so.
     """
     middles = 0.5 * (clock[1:] + clock[:-1])
     velocities = np.diff(path, axis=0) / np.diff(clock)[:, None]
-    return float(np.linalg.norm(np.polyfit(middles, velocities, 1)[0]))
+    return np.asarray(np.polyfit(middles, velocities, 1)[0])
 
 
 def person_factor(height: float) -> float:

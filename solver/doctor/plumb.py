@@ -25,7 +25,8 @@ SIZES = (0.8, 1.25)  # of gravity, that of a fall by such a parabola
 LEANING = cos(radians(45.0))  # a figure has been stood up by then: the next axis is no nearer
 ONE_WAY = sin(radians(25.0))  # of a fall's mean acceleration, that any of it misses it by
 # Of the slope, one standard deviation, by masses of limbs that are not known: as good as alike in
-# all falls of a figure. 0.4 s tell it to 0.4°, and shorter ones as velocities' slopes do.
+# all falls of a figure, so that several tell it no better. 0.4 s tell it to 0.4°, and shorter ones
+# as velocities' slopes do.
 OFF, OFF_AT = radians(0.4), 0.4  # s
 SURE = 4.0  # times what it is unsure by, by which down is elsewhere: in clean clips up to 1.6
 ALIKE = 3.0  # times what a fall is unsure by, that it may miss the others; what sways does by more
@@ -68,7 +69,7 @@ def find_plumb(performance: Performance) -> Plumb | None:
     mean = np.asarray(weights @ slopes / weights.sum())
     if not all(each.agrees(mean) for each in found):
         return None
-    return Plumb(mean, max(float(weights.sum() ** -0.5), OFF), len(found))
+    return Plumb(mean, float(unsure.min()), len(found))
 
 
 def _falls(performance: Performance) -> list[slice]:

@@ -24,7 +24,7 @@ from .flat_feet import STANDING_SPEED_UP, foot_ends
 # Of clean clips up to 0.6°. Steps and boxes slope by 8° and more, but there nobody leans.
 LEAST, MOST = 0.7, 4.0  # °
 LEANING = radians(3.5)  # in the mean, by which who moves on a level floor leans, or less
-SURELY_LEANS = 3.0  # times that, which nobody leans who stands; who seems to fall so also leans so
+SURELY_LEANS = 3.0  # times that, which nobody does who stands
 # Falls are bent where the body sways, and several of them each otherwise; feet slide then, too.
 SEVERAL = 3
 STILL, LEAST_STANDING = 0.06, 0.2  # m/s, of the median stance of so many s
@@ -65,8 +65,8 @@ def find_tilt(performance: Performance, figure: Figure, beneath: Heights) -> Fin
         return None
     along = plane is not None and plumb.is_along(plane.slope)
     confirmed = along and plane is not None and plane.explains(stances)
-    if plumb.is_sloping and (confirmed or plumb.falls >= SEVERAL or _stand_still(stances)):
-        return _by_falls(stances, plumb, performance)
+    if plumb.is_sloping and (confirmed or _is_no_movement(plumb, stances, performance)):
+        return _by_falls(stances, plumb)
     return _by_stances(stances, _Plane.through(stances, plumb)) if along else None
 
 
@@ -86,19 +86,27 @@ def _by_stances(stances: list[_Stance], plane: _Plane) -> Finding | None:
     return None
 
 
-def _by_falls(stances: list[_Stance], plumb: Plumb, performance: Performance) -> Finding | None:
-    """What falls tell for sure, where no level floor denies it; with boxes they tell it alone. At
-    the end of a swing from a bar a body goes down as if it fell, but who stands does not lean."""
+def _by_falls(stances: list[_Stance], plumb: Plumb) -> Finding | None:
+    """What falls tell for sure, where no level floor denies it; with boxes they tell it alone."""
     alone, level = _Plane(plumb.slope, 0.0, 0.0), _Plane(np.zeros(2), 0.0, 0.0)
     plane = _Plane.through(stances, plumb) if stances else alone
     if plane.off(stances) > OFF and level.off(stances) < OFF:
         return None
-    steep = float(np.linalg.norm(plumb.slope)) > SURELY_LEANS * LEANING
-    if steep and stances and not _lean(stances, performance).is_along(plumb.slope):
-        return None
     boxes = plane.off(stances) > OFF or not plumb.agrees(plane.slope)
     found = alone if boxes else plane
     return found.finding if found.angle < STEEPEST else None
+
+
+def _is_no_movement(plumb: Plumb, stances: list[_Stance], performance: Performance) -> bool:
+    """Whether falls are bent by the camera, and not as the body sways, which several of them are
+    otherwise, and in which feet slide, or by a swing from a bar, at whose ends it goes down as if
+    it fell. Of a camera that is far off the level whoever stands leans."""
+    slope = float(np.linalg.norm(plumb.slope))
+    leans = bool(stances) and _lean(stances, performance).is_along(plumb.slope)
+    if stances and slope > SURELY_LEANS * LEANING:
+        return leans
+    still = plumb.falls >= SEVERAL or _stand_still(stances)
+    return still or (leans and slope > LEANING)
 
 
 def _by_lean(stances: list[_Stance], plane: _Plane, performance: Performance) -> Finding | None:
