@@ -10,9 +10,10 @@ from types import TracebackType
 from typing import BinaryIO
 
 from ...solver.data.faults import OutputFolderBusy, OutputNotWritable
-from .lock import LOCK, remove, take
+from .lock import LOCK, WITHOUT, is_held, remove, remove_empty, take
 
 PART = "unfinished-"
+OWN_LOCK = f"{PART}lock"  # not a batch's, which may run in the same folder
 
 
 class Outbox:
@@ -50,21 +51,23 @@ class Outbox:
             with suppress(FileNotFoundError, NotADirectoryError):
                 self._part(name).unlink()
         if self._lock is not None:
-            remove(self.folder / LOCK, self._lock)
+            remove(self.folder / OWN_LOCK, self._lock)
         self._remove_made()
 
     def claim(self, names: Iterable[str]) -> None:
-        """Has the folder to itself until this is left, and removes what a run that was killed has
-        left of the files with these names.
+        """Has the folder to itself until this is left, where the file system has locks, and removes
+        what a run that was killed has left of the files with these names.
 
         Raises OutputFolderBusy, OutputNotWritable.
         """
+        if is_held(self.folder / LOCK):
+            raise OutputFolderBusy(str(self.folder))
         try:
-            self._lock = take(self.folder / LOCK, wait=False)
+            self._lock = self._taken()
         except BlockingIOError as error:
             raise OutputFolderBusy(str(self.folder)) from error
-        except OSError as error:  # also of a file system without locks
-            raise not_writable(self.folder / LOCK, error) from error
+        except OSError as error:
+            raise not_writable(self.folder / OWN_LOCK, error) from error
         for name in names:
             try:
                 self._part(name).unlink(missing_ok=True)
@@ -114,6 +117,19 @@ class Outbox:
                 raise not_writable(path, error) from error
         return found
 
+    def _taken(self) -> BinaryIO | None:
+        """The folder's lock; None where there can be none. Raises BlockingIOError, OSError."""
+        path = self.folder / OWN_LOCK
+        try:
+            return _own(path)
+        except PermissionError as error:  # another user's run is, or has left it
+            if is_held(path):
+                raise BlockingIOError(*error.args) from error
+            remove_empty(path)
+        with suppress(PermissionError):  # it cannot be removed either, and tells nothing
+            return _own(path)
+        return None
+
     def _part(self, name: str) -> Path:
         return self.folder / f"{PART}{name}"
 
@@ -123,6 +139,17 @@ class Outbox:
             for folder in self._made:
                 folder.rmdir()
         self._made = []
+
+
+def _own(path: Path) -> BinaryIO | None:
+    """The lock at this path; None on a file system that has no locks. Raises OSError."""
+    try:
+        return take(path, wait=False)
+    except OSError as error:
+        if error.errno not in WITHOUT:
+            raise
+    remove_empty(path)
+    return None
 
 
 def not_writable(path: Path, error: OSError) -> OutputNotWritable:

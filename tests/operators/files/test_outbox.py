@@ -1,14 +1,18 @@
 """Files of a job are delivered together, or not at all."""
 
+import os
 import shutil
 import subprocess
 import sys
+from errno import EACCES, EDEADLK, EIO
 from pathlib import Path
+from types import SimpleNamespace
+from typing import IO, Any
 
 import pytest
 from hangtime.operators.files import lock as locking
 from hangtime.operators.files.lock import LOCK
-from hangtime.operators.files.outbox import Outbox
+from hangtime.operators.files.outbox import OWN_LOCK, Outbox
 from hangtime.solver.data.faults import OutputFolderBusy, OutputNotWritable
 
 
@@ -113,10 +117,85 @@ def test_a_folder_into_which_another_run_writes_is_refused_and_its_files_stay(
 
 def test_the_lock_of_a_run_that_was_killed_holds_nobody_up(tmp_path: Path) -> None:
     lock = Path(locking.__file__)
-    run = f"import runpy, os, pathlib; at = pathlib.Path({str(tmp_path / LOCK)!r})\n"
+    run = f"import runpy, os, pathlib; at = pathlib.Path({str(tmp_path / OWN_LOCK)!r})\n"
     run += f"kept = runpy.run_path({str(lock)!r})['take'](at, wait=False)\nos._exit(9)"
     assert subprocess.run([sys.executable, "-c", run]).returncode == 9
-    assert (tmp_path / LOCK).exists()
+    assert (tmp_path / OWN_LOCK).exists()
     with Outbox(tmp_path) as outbox:
         outbox.claim([])
     assert not list(tmp_path.iterdir())
+
+
+def claim(folder: Path) -> None:
+    with Outbox(folder) as outbox:
+        outbox.claim([])
+
+
+def test_a_batch_that_runs_in_the_folder_is_seen_and_keeps_its_lock(tmp_path: Path) -> None:
+    with locking.take(tmp_path / LOCK, wait=False):
+        with pytest.raises(OutputFolderBusy):
+            claim(tmp_path)
+        assert [path.name for path in tmp_path.iterdir()] == [LOCK]
+    claim(tmp_path)  # a batch leaves it
+    assert [path.name for path in tmp_path.iterdir()] == [LOCK]
+
+
+@pytest.mark.parametrize("name", [LOCK, OWN_LOCK])
+def test_an_artists_file_with_a_locks_name_stays(name: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_text("the artist's")
+    claim(tmp_path)
+    assert (tmp_path / name).read_text() == "the artist's"
+
+
+@pytest.mark.parametrize("number", sorted(locking.WITHOUT))
+def test_where_the_file_system_has_no_locks_one_goes_on_without(
+    number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def lockless(*_: object, **__: object) -> None:
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(locking, "_lock", lockless)
+    claim(tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_lock_that_another_user_has_left_holds_nobody_up(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / OWN_LOCK).touch()
+    opened = Path.open
+
+    def barred(path: Path, mode: str = "r", **more: Any) -> IO[Any]:
+        if mode == "ab" and path.exists():
+            raise PermissionError(EACCES, os.strerror(EACCES))
+        return opened(path, mode, **more)
+
+    monkeypatch.setattr(Path, "open", barred)
+    claim(tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_lock_whose_file_is_never_known_again_is_taken(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As on file systems that number their files anew at each look."""
+    monkeypatch.setattr(locking, "_is_at", lambda *_: False)
+    claim(tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("number", "told"), [(EACCES, BlockingIOError), (EDEADLK, BlockingIOError), (EIO, OSError)]
+)
+def test_on_windows_only_what_another_holds_is_busy(
+    number: int, told: type[OSError], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def locked(*_: object) -> None:
+        raise OSError(number, os.strerror(number))
+
+    windows = SimpleNamespace(locking=locked, LK_LOCK=1, LK_NBLCK=2)
+    monkeypatch.setitem(sys.modules, "msvcrt", windows)
+    monkeypatch.setattr(locking, "sys", SimpleNamespace(platform="win32"))
+    with pytest.raises(OSError, match=os.strerror(number)) as raised:
+        locking.take(tmp_path / LOCK, wait=False)
+    assert raised.type is told
