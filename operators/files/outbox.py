@@ -46,13 +46,16 @@ class Outbox:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        for name in self._names:
-            # the folder may have gone, or a file may have its name
-            with suppress(FileNotFoundError, NotADirectoryError):
-                self._part(name).unlink()
-        if self._lock is not None:
-            remove(self.folder / OWN_LOCK, self._lock)
-        self._remove_made()
+        try:
+            for name in self._names:
+                # The folder may have gone, or a file may have its name; on Windows it may be open.
+                # What stays the next run removes, and it hides not why this one ended.
+                with suppress(OSError):
+                    self._part(name).unlink()
+        finally:
+            if self._lock is not None:
+                remove(self.folder / OWN_LOCK, self._lock)
+            self._remove_made()
 
     def claim(self, names: Iterable[str]) -> None:
         """Has the folder to itself until this is left, where the file system has locks, and removes

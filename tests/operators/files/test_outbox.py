@@ -16,6 +16,18 @@ from hangtime.operators.files.outbox import OWN_LOCK, Outbox
 from hangtime.solver.data.faults import OutputFolderBusy, OutputNotWritable
 
 
+def kept_open(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    """Nobody can remove the file of this name, as on Windows while a program shows it."""
+    unlink = Path.unlink
+
+    def barred(path: Path, missing_ok: bool = False) -> None:
+        if path.name == name:
+            raise PermissionError(EACCES, "it is open elsewhere")
+        unlink(path, missing_ok)
+
+    monkeypatch.setattr(Path, "unlink", barred)
+
+
 def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(OutputNotWritable), Outbox(tmp_path / "file" / "out"):
@@ -199,3 +211,20 @@ def test_on_windows_only_what_another_holds_is_busy(
     with pytest.raises(OSError, match=os.strerror(number)) as raised:
         locking.take(tmp_path / LOCK, wait=False)
     assert raised.type is told
+
+
+def end_halfway(folder: Path) -> None:
+    with Outbox(folder) as outbox:
+        outbox.claim([])
+        outbox.write_text("sheet.png", "half of it")
+        outbox.write_text("report.txt", "half of it")
+        raise ValueError("why it ended")
+
+
+def test_an_unfinished_file_that_cannot_be_removed_hides_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept_open(monkeypatch, "unfinished-sheet.png")
+    with pytest.raises(ValueError, match="why it ended"):
+        end_halfway(tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["unfinished-sheet.png"]
