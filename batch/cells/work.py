@@ -92,6 +92,8 @@ def adapt_cell(
         stages.out.write(f"Warning: {line}\n")
     placed = placed_objects(recipe.under, loaded.subject.problem, loaded.subject.analysis)
     result = solve(loaded.subject.with_objects(placed), stages, fits)
+    if Output.BVH in settings.outputs and result.fault is None:
+        write_motion(result, loaded.origin, outbox)
     if result.fault is not None:
         report = result.report(loaded.origin, stages.done)
         write_plain(result, report, (), outbox)
@@ -108,8 +110,6 @@ def adapt_cell(
             trajectory=Output.NPZ in settings.outputs,
             forms=forms,
         )
-    if Output.BVH in settings.outputs and result.fault is None:
-        write_motion(result, loaded.origin, outbox)
     told = result_lines(result, report, loaded.subject.analysis.unseen)
     return Done(told, figures(report), result.fault)
 

@@ -11,6 +11,7 @@ from typing import BinaryIO
 
 from ...solver.data.faults import OutputFolderBusy, OutputNotWritable
 from .lock import LOCK, WITHOUT, is_held, remove, remove_empty, take
+from .record import FileRecord
 
 PART = "unfinished-"
 OWN_LOCK = f"{PART}lock"  # not a batch's, which may run in the same folder
@@ -109,15 +110,14 @@ class Outbox:
         self._made = []
         return delivered
 
-    def clear(self, names: Iterable[str]) -> list[Path]:
-        """Removes files that are in the folder under these names, as those of an earlier result;
-        which ones. Raises OutputNotWritable."""
-        found = [path for path in (self.folder / name for name in names) if path.is_file()]
-        for path in found:
+    def records(self) -> dict[str, FileRecord]:
+        """How the files are written so far, by names. Raises OutputNotWritable."""
+        found = {}
+        for name in self._names:
             try:
-                path.unlink()
+                found[name] = FileRecord.of(self._part(name))
             except OSError as error:
-                raise not_writable(path, error) from error
+                raise not_writable(self.folder / name, error) from error
         return found
 
     def _taken(self) -> BinaryIO | None:

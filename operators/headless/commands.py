@@ -3,7 +3,7 @@
 import argparse
 import math
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 
@@ -25,9 +25,10 @@ from ..words.report_text import gravity_lines
 from .clip import Clip, LoadedClip, load
 from .doctor import examined, told, write_recipe_of
 from .doubts import doubts_about
+from .earlier import clear, listed_files
 from .explained import CANCELLED, FAILED, NO_SOLUTION, WRONG_INPUT, ended_by_signals, explained
 from .outputs import Outputs, linked_files, require_exported, require_place
-from .result_files import every_name, own_results, require_apart, result_lines
+from .result_files import every_name, others, require_apart, result_lines
 
 SCARCE = (
     "There is too little memory for this, and nothing was written; end other programs, allow more, "
@@ -187,7 +188,8 @@ def adapt(options: argparse.Namespace) -> None:
     with Outbox(options.out) as outbox:
         outbox.claim(every_name())
         loaded = load(clip, problem, stages, recipe.repairs)
-        require_apart(linked_files(), options.out, export)
+        linked = linked_files()
+        require_apart(linked, options.out, export)
         require_place(loaded, wanted, recipe.loop)
         require_exported(loaded, options.out, export)
         _ask_about(problem, loaded, recipe.repairs)
@@ -196,23 +198,22 @@ def adapt(options: argparse.Namespace) -> None:
         outputs = Outputs(loaded, wanted, keys, result, outbox, stages, recipe.loop, export)
         if result.fault is not None:
             outputs.write_failure()
-            print(*_delivered(outbox, export), sep="\n")
+            print(*_delivered(outbox, (*inputs, *linked)), sep="\n")
             raise result.fault
         report = outputs.write(picture=not options.no_picture)
-        files = _delivered(outbox, export)
+        files = _delivered(outbox, (*inputs, *linked))
     total = f"{'Total':<{WIDTH}}{stages.total:6.1f} s"
     told = result_lines(result, report, loaded.subject.analysis.unseen)
     print(total, *told, *files, sep="\n")
 
 
-def _delivered(outbox: Outbox, export: ExportOptions) -> list[str]:
-    """The files are in their places, and none of an earlier run is beside them; lines that tell of
-    it. Raises OutputNotWritable."""
+def _delivered(outbox: Outbox, inputs: Iterable[Path]) -> list[str]:
+    """The files are in their places, and none that an earlier run wrote is beside them, but for
+    what was made from it and for the inputs; lines that tell of it. Raises OutputNotWritable."""
+    listed = listed_files(outbox.folder)
     written = outbox.deliver()
-    names = (path.name for path in own_results(outbox.folder, export))
-    older = outbox.clear(name for name in names if outbox.folder / name not in written)
     lines = ["Written:", *(f"  {path}" for path in written)]
-    return lines + (["Removed, as of an earlier run:", *(f"  {p}" for p in older)] if older else [])
+    return lines + clear(others(outbox.folder, (*written, *inputs)), listed)
 
 
 def analyze(options: argparse.Namespace) -> None:

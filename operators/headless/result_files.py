@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
 from itertools import product
 from pathlib import Path
 from types import MappingProxyType
@@ -46,6 +47,13 @@ def exported(folder: Path, export: ExportOptions) -> Path:
     return folder / f"{EXPORTED}{ENDINGS[format_of(export)]}"
 
 
+def others(folder: Path, kept: Iterable[Path]) -> list[Path]:
+    """The paths that files of a job can have, but for those of the files that are kept."""
+    paths = [folder / name for name in every_name()]
+    same = {path for path, each in product(paths, tuple(kept)) if are_one_file(path, each)}
+    return [path for path in paths if path not in same]
+
+
 def require_apart(inputs: Iterable[Path], folder: Path, export: ExportOptions) -> None:
     """Before a solve takes its seconds. inputs: what a job reads. Raises WouldReplaceInput."""
     for read, written in product(inputs, own_results(folder, export)):
@@ -54,8 +62,7 @@ def require_apart(inputs: Iterable[Path], folder: Path, export: ExportOptions) -
 
 
 def own_results(folder: Path, export: ExportOptions) -> tuple[Path, ...]:
-    """The files that a job writes, or has taken away, as they are of an earlier one; a film
-    is a batch's."""
+    """The files that a job writes; a film is a batch's."""
     return (exported(folder, export), *(folder / name for name in NAMES if name != FILM))
 
 
@@ -73,17 +80,18 @@ def write_report(
     more: Mapping[str, object] = MappingProxyType({}),
     last: Sequence[str] = (),
 ) -> None:
-    """The report for programs and for people. more, and last lines: what is told beside it, in
-    each.
+    """The report for programs and for people; the former lists the files that were written before
+    it. more, and last lines: what is told beside it, in each.
 
     Raises OutputNotWritable.
     """
-    records = {**as_json(report), "warnings": warnings_of(report), **more}
-    outbox.write_text(REPORTS[0], json.dumps(records, indent=1, allow_nan=False) + "\n")
     outbox.write_text(
         REPORTS[1],
         "\n".join([as_text(report), *last, *([""] if last else [])]),
     )
+    files = {name: asdict(record) for name, record in outbox.records().items()}
+    records = {**as_json(report), "warnings": warnings_of(report), **more, "files": files}
+    outbox.write_text(REPORTS[0], json.dumps(records, indent=1, allow_nan=False) + "\n")
 
 
 def result_lines(

@@ -58,14 +58,6 @@ def test_delivered_files_replace_the_old_ones(tmp_path: Path) -> None:
     assert len(list(tmp_path.iterdir())) == 1
 
 
-def test_files_of_an_earlier_result_are_cleared_and_folders_stay(tmp_path: Path) -> None:
-    (tmp_path / "old.txt").write_text("old")
-    (tmp_path / "folder.txt").mkdir()
-    with Outbox(tmp_path) as outbox:
-        assert outbox.clear(["old.txt", "folder.txt", "none.txt"]) == [tmp_path / "old.txt"]
-    assert [path.name for path in tmp_path.iterdir()] == ["folder.txt"]
-
-
 def write_where_nothing_is(folder: Path) -> None:
     with Outbox(folder) as outbox:
         outbox.write_text("report.txt", "new")

@@ -5,6 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from hangtime.operators.files.outbox import Outbox
+from hangtime.operators.files.record import FileRecord
+from hangtime.operators.headless.earlier import listed_files
 from hangtime.operators.headless.result_files import write_report
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.reports.recording import Origin
@@ -40,3 +42,13 @@ def test_of_a_motion_as_recorded_nothing_is_warned(tmp_path: Path) -> None:
     warnings, text = written(hard(1.0), tmp_path)
     assert warnings == []
     assert "Warning" not in text
+
+
+def test_the_report_lists_the_files_that_are_written_with_it(tmp_path: Path) -> None:
+    with Outbox(tmp_path) as outbox:
+        outbox.write_text("trajectory.npz", "a motion")
+        write_report(hard(1.0), outbox)
+        outbox.deliver()
+    listed = listed_files(tmp_path)
+    assert set(listed) == {"trajectory.npz", "report.txt"}
+    assert all(FileRecord.of(tmp_path / name) == record for name, record in listed.items())

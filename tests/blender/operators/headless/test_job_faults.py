@@ -1,6 +1,7 @@
 """Jobs that cannot be done: one line that says why, and what is left."""
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.batch.cells.reading import read_clip
 from hangtime.bridge.files.import_clip import import_clip
+from hangtime.operators.files.outbox import Outbox
 from hangtime.operators.headless import commands
 from hangtime.operators.headless.cli import main
 from hangtime.solver.data.faults import OutsideKeys
@@ -191,19 +193,31 @@ def test_a_scene_whose_armature_is_in_a_file_that_is_gone(tmp_path: Path, capsys
 def test_no_solution_leaves_a_report_and_nothing_of_an_earlier_run(
     clip: Path, tmp_path: Path, capsys
 ) -> None:
-    (tmp_path / "out").mkdir()
-    for name in ("adapted.fbx", "trajectory.npz"):
-        (tmp_path / "out" / name).write_text("of an earlier run")
+    """But for what was polished since, and what is somebody's own."""
+    with Outbox(tmp_path / "out") as earlier:
+        for name in ("adapted.fbx", "adapted.glb", "adapted.blend"):
+            earlier.write_text(name, "of an earlier run")
+        listed = {name: asdict(record) for name, record in earlier.records().items()}
+        earlier.write_text("report.json", json.dumps({"files": listed}))
+        earlier.deliver()
+    own = {"adapted.blend", "film.mp4"}
+    for name in own:
+        (tmp_path / "out" / name).write_text("the artist's")
     assert run(tmp_path, clip, EDIT.replace("up = 0.2", "up = 8.0") + PLAIN) == 3
     said = capsys.readouterr()
     doubt, failure = said.err.splitlines()
-    assert "Removed, as of an earlier run:" in said.out
+    removed, left = said.out.split("Removed, as of an earlier run:")[1].split("Left as it is", 1)
+    assert [Path(each).name for each in removed.split()] == ["adapted.fbx", "adapted.glb"]
+    assert "since it was changed after it was written: " in left
+    assert "since no report in its folder lists it: " in left
     assert "nobody jumps onto more than" in doubt
     assert "“Landing: " in failure
     written = {path.name for path in (tmp_path / "out").iterdir()}
-    assert written - {"best_found.blend"} == {"report.json", "report.txt"}
+    assert written - {"best_found.blend"} == {"report.json", "report.txt"} | own
+    assert all((tmp_path / "out" / name).read_text() == "the artist's" for name in own)
     report = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))
     assert report["status"] in ("stalled", "too many steps")
+    assert set(report["files"]) == written - own - {"report.json"}
 
 
 @pytest.mark.slow
