@@ -21,13 +21,15 @@ class Outbox:
     """An output folder. Files are written under other names until `deliver` gives them their own.
 
     As a context it removes on leaving what was not delivered, and a folder that it made in vain.
-    Raises OutputNotWritable on entering where the folder cannot be made or written.
+    What ends it after files were delivered has a note that names them. Raises OutputNotWritable on
+    entering where the folder cannot be made or written.
     """
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self._made: list[Path] = []
         self._names: list[str] = []
+        self._delivered: list[Path] = []
         self._lock: BinaryIO | None = None
 
     def __enter__(self) -> "Outbox":
@@ -47,6 +49,8 @@ class Outbox:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        if error is not None and self._delivered:
+            error.add_note(f"written by then: {', '.join(map(str, self._delivered))}")
         try:
             for name in self._names:
                 # The folder may have gone, or a file may have its name; on Windows it may be open.
@@ -96,7 +100,6 @@ class Outbox:
 
         Raises OutputNotWritable.
         """
-        delivered = []
         for name in self._names:
             if (self.folder / name).is_dir():  # before any other gets its name
                 raise OutputNotWritable(str(self.folder / name), os.strerror(EISDIR))
@@ -105,10 +108,10 @@ class Outbox:
                 os.replace(self._part(name), self.folder / name)
             except OSError as error:
                 raise not_writable(self.folder / name, error) from error
-            delivered.append(self.folder / name)
+            self._delivered.append(self.folder / name)
         self._names = []
         self._made = []
-        return delivered
+        return list(self._delivered)
 
     def records(self) -> dict[str, FileRecord]:
         """How the files are written so far, by names. Raises OutputNotWritable."""

@@ -31,8 +31,8 @@ from .outputs import Outputs, linked_files, require_exported, require_place
 from .result_files import every_name, others, require_apart, result_lines
 
 SCARCE = (
-    "There is too little memory for this, and nothing was written; end other programs, allow more, "
-    "or take fewer frames with --first and --last."
+    "There is too little memory for this; {left}. End other programs, allow more, or take fewer "
+    "frames with --first and --last."
 )
 
 
@@ -50,13 +50,18 @@ def run(argv: Sequence[str]) -> int:
     except Fault as fault:
         print(explained(fault, options.recipe), file=sys.stderr)
         return NO_SOLUTION if isinstance(fault, NoSolution) else WRONG_INPUT
-    except KeyboardInterrupt:
-        print("\nCancelled; nothing was written.", file=sys.stderr)
+    except KeyboardInterrupt as end:
+        print(f"\nCancelled; {_left(end)}.", file=sys.stderr)
         return CANCELLED
-    except MemoryError:
-        print(SCARCE, file=sys.stderr)
+    except MemoryError as end:
+        print(SCARCE.format(left=_left(end)), file=sys.stderr)
         return FAILED
     return 0
+
+
+def _left(end: BaseException) -> str:
+    """What a command that ended early has written, which an Outbox notes."""
+    return "; ".join(getattr(end, "__notes__", ["nothing was written"]))
 
 
 def parser() -> argparse.ArgumentParser:
@@ -201,10 +206,9 @@ def adapt(options: argparse.Namespace) -> None:
             print(*_delivered(outbox, (*inputs, *linked)), sep="\n")
             raise result.fault
         report = outputs.write(picture=not options.no_picture)
-        files = _delivered(outbox, (*inputs, *linked))
-    total = f"{'Total':<{WIDTH}}{stages.total:6.1f} s"
-    told = result_lines(result, report, loaded.subject.analysis.unseen)
-    print(total, *told, *files, sep="\n")
+        told = result_lines(result, report, loaded.subject.analysis.unseen)
+        total = f"{'Total':<{WIDTH}}{stages.total:6.1f} s"
+        print(total, *told, *_delivered(outbox, (*inputs, *linked)), sep="\n")
 
 
 def _delivered(outbox: Outbox, inputs: Iterable[Path]) -> list[str]:

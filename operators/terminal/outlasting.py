@@ -13,6 +13,7 @@ from typing import TextIO, cast
 
 CUT_SHORT = 1
 PIPE_CLOSED = 128 + 13  # as shells count a process that SIGPIPE has ended
+_UNREAD = {errno.EPIPE, errno.EINVAL} if sys.platform == "win32" else {errno.EPIPE}
 
 Command = Callable[[Sequence[str]], int]
 
@@ -79,7 +80,7 @@ def outlasting(command: Command) -> Command:
             out.flush()
             if out.lost is None or code:
                 return code
-            if out.lost.errno == errno.EPIPE:
+            if out.lost.errno in _UNREAD:
                 return PIPE_CLOSED
             print(
                 f"Not all could be printed ({out.lost.strerror}); files that were asked for are "

@@ -220,3 +220,22 @@ def test_an_unfinished_file_that_cannot_be_removed_hides_nothing(
     with pytest.raises(ValueError, match="why it ended"):
         end_halfway(tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["unfinished-sheet.png"]
+
+
+def end_after_delivery(folder: Path, *names: str) -> None:
+    with Outbox(folder) as outbox:
+        for name in names:
+            outbox.write_text(name, "all of it")
+        outbox.deliver()
+        raise MemoryError
+
+
+def test_what_ends_a_run_after_its_delivery_tells_what_is_written(tmp_path: Path) -> None:
+    with pytest.raises(MemoryError) as raised:
+        end_after_delivery(tmp_path, "a.txt", "b.txt")
+    assert raised.value.__notes__ == [
+        f"written by then: {tmp_path / 'a.txt'}, {tmp_path / 'b.txt'}"
+    ]
+    with pytest.raises(MemoryError) as raised:
+        end_after_delivery(tmp_path)
+    assert not hasattr(raised.value, "__notes__")

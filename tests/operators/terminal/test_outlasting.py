@@ -68,6 +68,14 @@ def test_work_goes_on_where_all_is_closed(tmp_path: Path) -> None:
     assert run(tmp_path / "result", "<&- >&- 2>&-") == (1, "")
 
 
+def test_a_closed_pipe_is_one_on_windows_too() -> None:
+    """Which calls it an invalid argument."""
+    as_there = "import sys; sys.platform = 'win32'; import runpy, errno\n"
+    told = f"unread = runpy.run_path({outlasting.__file__!r})['_UNREAD']\n"
+    told += "assert unread == {errno.EPIPE, errno.EINVAL}"
+    assert subprocess.run([sys.executable, "-c", as_there + told]).returncode == 0
+
+
 def test_what_can_be_printed_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     def command(argv: object) -> int:
         print("done")
