@@ -21,6 +21,7 @@ from .shapes import write_shapes
 from .skeleton import Skeleton
 
 SCALE_NOISE = 2e-5  # of a scale that is 1: in single precision poses and rest poses are off by half
+_LEAST = 1e-6  # of a scale: what hangs on a bone is told by what undoes it
 
 
 @dataclass(frozen=True)
@@ -83,12 +84,13 @@ def _write(
 ) -> None:
     frames = np.arange(take.first, take.last + 1.0)
     rests = [np.array(armature_data(rig).bones[name].matrix_local) for name in skeleton.names]
-    held: list[FloatArray] = []  # (T, 4, 4) each: what the rig has of the poses
+    poses = _with_size(take.poses)
+    held: list[FloatArray] = []  # (T, 4, 4) each: what the rig has of them
     for i, name in enumerate(skeleton.names):
         above, frame = skeleton.parents[i], rests[i]
         if above >= 0:
             frame = held[above] @ np.linalg.solve(rests[above], rests[i])
-        basis = np.linalg.solve(frame, take.poses[:, i])
+        basis = np.linalg.solve(frame, poses[:, i])
         place, turns = basis[:, :3, 3], proper(basis[:, :3, :3])
         sizes = np.linalg.norm(basis[:, :3, :3], axis=1)
         held.append(frame @ _basis(place, turns, sizes))
@@ -101,6 +103,16 @@ def _write(
             path = bone.path_from_id(channel)
             fcurves.write_channels(curves, path, frames, values, name)
     write_shapes(rig, curves, frames, take.shapes)
+
+
+def _with_size(poses: FloatArray) -> FloatArray:
+    """The same poses (T, B, 4, 4), where something is hidden by a scale of 0 with the least one, so
+    that it stays out of sight."""
+    found, axes = poses.copy(), poses[..., :3, :3]
+    flat = np.linalg.svd(axes, compute_uv=False)[..., -1] < _LEAST
+    u, sizes, vt = np.linalg.svd(axes[flat])
+    found[flat, :3, :3] = u * np.maximum(sizes, _LEAST)[:, None] @ vt
+    return found
 
 
 def _basis(place: FloatArray, turns: FloatArray, sizes: FloatArray) -> FloatArray:

@@ -200,6 +200,28 @@ def test_joints_are_in_place_however_bones_inherit_sizes(
 
 
 @pytest.mark.parametrize("engine", [Engine.NONE, Engine.UNREAL])
+@pytest.mark.parametrize("hidden", ["spine", "head"])
+def test_bones_that_a_scale_of_0_hides_are_out_of_sight_in_the_file(
+    hidden: str, engine: Engine, tmp_path: Path
+) -> None:
+    armature, path = animated_rig(), tmp_path / "hidden.fbx"
+    bone = armature.pose.bones[hidden]
+    for frame, size in ((5, 0.0), (12, 0.0), (13, 1.0), (20, 1.0)):
+        bone.scale = (size, size, size)
+        bone.keyframe_insert("scale", frame=frame)
+    action = armature.animation_data.action
+    action.use_frame_range, action.frame_start, action.frame_end = True, 5, 20
+    shown = record(armature, np.arange(5.0, 21.0))
+    export_takes(armature, [action], path, ExportOptions(engine, FileFormat.FBX))
+    sizes = animated(path, "Lcl Scaling")[hidden]
+    again = reimport(path, shown.frames, begins=5.0 if engine is Engine.UNREAL else 0.0)
+    columns = [again.index(each.name) for each in shown.bones]
+    np.testing.assert_allclose(again.heads[:, columns], shown.heads, atol=1e-4)
+    assert [min(values) for values in sizes] == pytest.approx([0.0] * 3, abs=1e-5)
+    assert [max(values) for values in sizes] == pytest.approx([1.0] * 3, abs=1e-5)
+
+
+@pytest.mark.parametrize("engine", [Engine.NONE, Engine.UNREAL])
 def test_a_take_of_one_frame_is_the_same_alone_and_among_others(
     engine: Engine, tmp_path: Path
 ) -> None:
