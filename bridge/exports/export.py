@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
+from itertools import count
 from pathlib import Path
 
 import bpy
@@ -57,7 +58,7 @@ def export_takes(
             moving = [copy for copy, mesh in copies.items() if mesh in shaped]
             drive_shapes(rig, moving, np.concatenate([take.shapes for take in found.takes]))
             names = {rig: CONVENTIONS[options.engine].object or armature.name}
-            names |= {copy: _beside(names[rig], mesh.name) for copy, mesh in copies.items()}
+            names |= _beside(names[rig], copies)
             with _data_named(copies):
                 write(rig, names, found.takes, Path(path), options, keeps_frames=keeps)
         finally:
@@ -74,9 +75,17 @@ def require_exportable(
     require_format(format_of(options), bones, Path(path))
 
 
-def _beside(rig: str, mesh: str) -> str:
-    """A mesh's name beside a rig's: an engine may want that of the rig, which so keeps it."""
-    return f"{mesh} Mesh" if mesh == rig else mesh
+def _beside(
+    rig: str, copies: Mapping[bpy.types.Object, bpy.types.Object]
+) -> dict[bpy.types.Object, str]:
+    """Copies' names, those of their meshes: but that of the rig, which an engine may want of it, is
+    the rig's, and its mesh gets one that no other has."""
+    names = {copy: mesh.name for copy, mesh in copies.items()}
+    free = f"{rig} Mesh"
+    numbers = count(2)
+    while free in names.values():
+        free = f"{rig} Mesh {next(numbers)}"
+    return {copy: free if name == rig else name for copy, name in names.items()}
 
 
 @contextmanager

@@ -252,6 +252,16 @@ def test_a_mesh_leaves_the_name_to_the_armature_that_unreal_leaves_out(tmp_path:
     assert body.name == "Armature"
 
 
+def test_a_mesh_that_leaves_its_name_takes_none_of_another(tmp_path: Path) -> None:
+    armature, path = animated_rig(), tmp_path / "body.fbx"
+    for name in ("Armature", "Armature Mesh", "Armature Mesh 2"):
+        skinned(armature).name = name
+    action = armature.animation_data.action
+    export_takes(armature, [action], path, ExportOptions(Engine.UNREAL, skin=True))
+    nodes = fbx_file(path).transformations.keys() - armature.data.bones.keys()
+    assert nodes == {"Armature", *(f"Armature Mesh{number}" for number in ("", " 2", " 3"))}
+
+
 def smiling(body: bpy.types.Object, armature: bpy.types.Object) -> bpy.types.Object:
     """A mesh with a shape key that has keys, one that a bone drives, and one that nothing moves."""
     for name in ("Basis", "Smile", "Bulge", "Fat"):
