@@ -18,6 +18,7 @@ from hangtime.bridge.armature.read import read_recording, record
 from hangtime.bridge.armature.write import side_by_side, write_action
 from hangtime.bridge.exports.engines import ENDINGS
 from hangtime.bridge.exports.export import export_takes
+from hangtime.bridge.exports.fbx_exporter import span_takes
 from hangtime.bridge.files.reimport import reimport
 from hangtime.bridge.recipe.export import ExportOptions
 from hangtime.bridge.rows.choices import Engine, FileFormat
@@ -268,6 +269,13 @@ def test_the_time_of_an_fbx_lasts_as_long_as_its_longest_take(
     found = fbx_file(path)
     assert found.spans[0] == pytest.approx((0.0, seconds))
     assert sorted(last for _, last in found.spans[1:]) == pytest.approx([5.0 / 12.0, seconds])
+
+
+def test_an_fbx_that_tells_no_span_of_time_stays_as_it_is(tmp_path: Path) -> None:
+    path = tmp_path / "later.fbx"
+    path.write_bytes(b"Kaydara FBX Binary")
+    span_takes(path)
+    assert path.read_bytes() == b"Kaydara FBX Binary"
 
 
 def _curves(path: Path, take: str) -> list[np.ndarray]:
