@@ -19,6 +19,7 @@ from ..accessors import current_action, take_strips
 from ..action_slots import bag_of, home_of, keyframe_strip, recorded_slot
 from ..played_strips import played_strip
 from ..unkeyed import put_back
+from .incremental import note_made_action
 
 CurveHolder: TypeAlias = "bpy.types.Action | bpy.types.ActionChannelbag"  # 4.2 has no channelbags
 
@@ -72,6 +73,7 @@ def new_action(
 ) -> tuple[bpy.types.Action, CurveHolder]:
     """A new action, and the container of its curves; in a slot of that name, where it has slots."""
     action = bpy.data.actions.new(name)
+    note_made_action(action)
     if not hasattr(action, "slots"):
         return action, action
     made = action.slots.new(owner.id_type, slot)

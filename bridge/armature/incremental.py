@@ -29,6 +29,7 @@ GOING_BACK = 4.0  # times what that costs is added: entering costs as much, fram
 FEWEST_FRAMES = 4  # a slice; each costs one frame more, to go back
 
 _nobody_waits = ContextVar("_nobody_waits", default=False)
+_made: ContextVar[set[int] | None] = ContextVar("_made", default=None)
 
 
 @contextmanager
@@ -40,6 +41,24 @@ def at_once() -> Iterator[None]:
         yield
     finally:
         _nobody_waits.reset(token)
+
+
+@contextmanager
+def noting_made(made: set[int]) -> Iterator[None]:
+    """Context in which the actions that a slice makes are noted, by their numbers in this session:
+    what else appears meanwhile is others', such as handlers of other extensions."""
+    token = _made.set(made)
+    try:
+        yield
+    finally:
+        _made.reset(token)
+
+
+def note_made_action(action: bpy.types.Action) -> None:
+    """An action was made by what runs now."""
+    made = _made.get()
+    if made is not None:
+        made.add(action.session_uid)
 
 
 def complete(slices: Incremental[T]) -> T:

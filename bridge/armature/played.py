@@ -34,6 +34,7 @@ from ..played_strips import (
     why_unread,
 )
 from . import fcurves
+from .incremental import note_made_action
 
 SAME_SCALE = 1e-3  # of a strip, to which it is none
 LARGEST_DENOMINATOR, NEAR_RATIO = 8, 5e-3  # of a strip's scale that is meant to be a simple one
@@ -159,6 +160,7 @@ def scene_copy(owner: bpy.types.Object, action: bpy.types.Action, name: str) -> 
     """A copy of a recording with its keys where the scene shows them: elsewhere only where a strip
     plays it sooner or later, slower or faster, or in part."""
     copy = alone(action)
+    note_made_action(copy)
     copy.name = name
     free_copy(copy)
     time = strip_time(owner, action)

@@ -6,6 +6,7 @@ window, or another extension's timer, may rename, delete and edit between two pa
 
 from __future__ import annotations
 
+from collections.abc import Set
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import TypeVar
@@ -15,7 +16,7 @@ import bpy
 from ....bridge.accessors import current_action
 from ....bridge.armature import fcurves
 from ....bridge.armature.actions import recorded_action, show
-from ....bridge.armature.incremental import Incremental
+from ....bridge.armature.incremental import Incremental, noting_made
 from ....bridge.properties.settings import settings_of
 from ....solver.data.faults import (
     ActionGone,
@@ -37,21 +38,21 @@ def undisturbed(armature: bpy.types.Object, writing: Incremental[T]) -> Incremen
     Raises as that does, and, where something came in between, ArmatureGone, EditedMeanwhile,
     ChangedMeanwhile, ActionGone.
     """
-    shown, needed = _Shown.by(armature), _Needed(armature)
+    shown, needed, made = _Shown.by(armature), _Needed(armature), set[int]()
     try:
         while True:
-            before = _actions()
             try:
-                part = next(writing)
+                with noting_made(made):
+                    part = next(writing)
             except StopIteration as end:
                 result: T = end.value
                 return result
-            needed.note(before)
+            needed.note(made)
             yield part
             needed.require()
     except (Fault, ReferenceError) as why:
         end_with(writing, why)
-        shown.restore(needed.made)
+        shown.restore(made)
         raise
     finally:
         with suppress(ReferenceError):
@@ -74,14 +75,14 @@ class _Shown:
         shown = current_action(armature)
         return _Shown(armature, shown, slot, settings.adapted, settings.status)
 
-    def restore(self, made: frozenset[int]) -> None:
+    def restore(self, made: Set[int]) -> None:
         """Remove the actions of these numbers as far as they are left, whoever shows them."""
         with suppress(ReferenceError):  # of what was shown something is gone, too
             self._show_again(made)
         for each in [each for each in bpy.data.actions if each.session_uid in made]:
             bpy.data.actions.remove(each)
 
-    def _show_again(self, made: frozenset[int]) -> None:
+    def _show_again(self, made: Set[int]) -> None:
         settings = settings_of(self.armature)
         result = settings.adapted
         if result == self.adapted and current_action(self.armature) is not None:
@@ -94,7 +95,7 @@ class _Shown:
 
 class _Needed:
     """What each part takes for granted of what the one before left: the armature as it stood, the
-    recording's action, and those that were made. made: their numbers."""
+    recording's action, and those that were made."""
 
     def __init__(self, armature: bpy.types.Object) -> None:
         self._kept, self._standing = Kept.of(armature), Standing.of(armature)
@@ -102,16 +103,11 @@ class _Needed:
         self._source = {} if source is None else {source.session_uid: source.name}
         self._made: dict[int, str] = {}
 
-    @property
-    def made(self) -> frozenset[int]:
-        return frozenset(self._made)
-
-    def note(self, before: dict[int, str]) -> None:
-        """A part has ended. before: actions that there were before it, by their numbers."""
-        self._standing, now = Standing.of(self._kept.found()), _actions()
-        new = {uid: name for uid, name in now.items() if uid not in before}
-        kept = {uid: name for uid, name in self._made.items() if uid in now}
-        self._made = kept | new
+    def note(self, made: Set[int]) -> None:
+        """A part has ended. made: numbers of the actions that were made so far, of which some may
+        have served."""
+        self._standing = Standing.of(self._kept.found())
+        self._made = {uid: name for uid, name in _actions().items() if uid in made}
 
     def require(self) -> None:
         """Raises ArmatureGone, EditedMeanwhile, ChangedMeanwhile, ActionGone."""

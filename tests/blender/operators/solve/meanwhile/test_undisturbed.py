@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import present
+from hangtime.bridge.app_handlers import add_handler
 from hangtime.bridge.armature.fcurves import holder_in, keys, slot_identifier
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.worker_client import shared
@@ -121,3 +123,22 @@ def test_what_comes_in_between_is_told_and_leaves_nothing_of_a_result(
     assert armature.hangtime.adapted.name == armature.animation_data.action.name == name
     if disturb is not rename:  # which renames what keys are of
         assert _keys_of(bpy.data.actions[recording], armature) == was
+
+
+def test_what_others_made_meanwhile_stays(armature: bpy.types.Object, solved: Solved) -> None:
+    def make(*_of_handler: object) -> None:
+        """Another extension makes an action as soon as the frame changes."""
+        if "Another's" not in bpy.data.actions:
+            bpy.data.actions.new("Another's")
+
+    task = _begun(armature, solved, _copied)
+    with ExitStack() as undo:
+        add_handler(undo, bpy.app.handlers.frame_change_post, make)
+        while not _shown():
+            next(task)
+    assert "Another's" in bpy.data.actions
+    rename(armature)
+    with pytest.raises(Fault):
+        complete(task)
+    assert not _copied()
+    assert "Another's" in bpy.data.actions
