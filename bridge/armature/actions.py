@@ -97,10 +97,11 @@ def show(
     elif action == assigned_action(armature) or action != shown:
         fcurves.assign(armature, action, slot)
     reach_as_strip(armature)
-    _evaluate()
+    evaluate()
 
 
-def _evaluate() -> None:
+def evaluate() -> None:
+    """Have the pose follow what is shown now."""
     scene = current_scene()
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
 
@@ -124,7 +125,7 @@ def showing_action(armature: bpy.types.Object, action: bpy.types.Action | None) 
     if strip is not None:
         with playing_strip(armature, strip):
             yield
-        _evaluate()
+        evaluate()
         return
     with without_strips(armature):
         fcurves.assign(armature, action, slot)
@@ -132,4 +133,4 @@ def showing_action(armature: bpy.types.Object, action: bpy.types.Action | None) 
             yield
         finally:
             fcurves.assign(armature, assigned, slot)
-    _evaluate()
+    evaluate()

@@ -5,7 +5,7 @@ A result's strip replaces what is below, or holds only the difference and is com
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from contextlib import contextmanager
 from typing import Literal, TypeAlias
 
@@ -225,6 +225,16 @@ def remove_strips(owner: bpy.types.Object, action: bpy.types.Action) -> None:
             data.nla_tracks.remove(track)
         if held is not None and held != action:
             bpy.data.actions.remove(held)
+
+
+def remove_strips_but(owner: bpy.types.Object, kept: Set[int]) -> None:
+    """Remove the strips of the takes of `owner` that are not among those of these addresses, and
+    the tracks that are empty then; their actions stay."""
+    for track, strip in take_strips(owner):
+        if strip.as_pointer() not in kept:
+            track.strips.remove(strip)
+            if not len(track.strips):
+                present(owner.animation_data).nla_tracks.remove(track)
 
 
 @contextmanager

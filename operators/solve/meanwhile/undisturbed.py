@@ -8,24 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Set
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import TypeVar
 
 import bpy
 
-from ....bridge.accessors import current_action
-from ....bridge.armature import fcurves
-from ....bridge.armature.actions import recorded_action, show
+from ....bridge.armature.actions import recorded_action
 from ....bridge.armature.incremental import Incremental, noting_made
-from ....bridge.properties.settings import settings_of
 from ....solver.data.faults import (
     ActionGone,
     ChangedMeanwhile,
     EditedMeanwhile,
     Fault,
 )
-from .removal import remove_result
 from .replaced import end_with
+from .shown import Shown
 from .standing import EDITED, Kept, Standing
 
 T = TypeVar("T")
@@ -38,7 +34,7 @@ def undisturbed(armature: bpy.types.Object, writing: Incremental[T]) -> Incremen
     Raises as that does, and, where something came in between, ArmatureGone, EditedMeanwhile,
     ChangedMeanwhile, ActionGone.
     """
-    shown, needed, made = _Shown.by(armature), _Needed(armature), set[int]()
+    shown, needed, made = Shown.by(armature), _Needed(armature), set[int]()
     try:
         while True:
             try:
@@ -57,40 +53,6 @@ def undisturbed(armature: bpy.types.Object, writing: Incremental[T]) -> Incremen
     finally:
         with suppress(ReferenceError):
             writing.close()
-
-
-@dataclass(frozen=True)
-class _Shown:
-    """What an armature showed before a result of it was written."""
-
-    armature: bpy.types.Object
-    action: bpy.types.Action | None
-    slot: str | None
-    adapted: bpy.types.Action | None
-    status: str
-
-    @staticmethod
-    def by(armature: bpy.types.Object) -> _Shown:
-        settings, slot = settings_of(armature), fcurves.slot_identifier(armature)
-        shown = current_action(armature)
-        return _Shown(armature, shown, slot, settings.adapted, settings.status)
-
-    def restore(self, made: Set[int]) -> None:
-        """Remove the actions of these numbers as far as they are left, whoever shows them."""
-        with suppress(ReferenceError):  # of what was shown something is gone, too
-            self._show_again(made)
-        for each in [each for each in bpy.data.actions if each.session_uid in made]:
-            bpy.data.actions.remove(each)
-
-    def _show_again(self, made: Set[int]) -> None:
-        settings = settings_of(self.armature)
-        result = settings.adapted
-        if result == self.adapted and current_action(self.armature) is not None:
-            return  # nothing else was shown yet
-        if result is not None and result.session_uid in made:
-            remove_result(self.armature, result)
-        settings.status, settings.adapted = self.status, self.adapted
-        show(self.armature, self.action, self.slot)
 
 
 class _Needed:

@@ -11,10 +11,12 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from hangtime.bridge.accessors import present
+from hangtime.bridge.accessors import current_action, present
 from hangtime.bridge.app_handlers import add_handler
 from hangtime.bridge.armature.fcurves import holder_in, keys, slot_identifier
 from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.properties.settings import action_settings
+from hangtime.bridge.rows.choices import WrittenAs
 from hangtime.bridge.worker_client import shared
 from hangtime.operators.solve.adapt import ask_for
 from hangtime.operators.solve.common import said
@@ -32,7 +34,9 @@ from hangtime.tests.blender.operators.solve.meanwhile.changes import (
     rename,
     undo,
 )
+from hangtime.tests.helpers.clips import JUMP_FRAMES
 
+FORMS = [form for form in WrittenAs if form is not WrittenAs.SLOT or bpy.app.version >= (4, 5)]
 pytestmark = pytest.mark.usefixtures("_enabled", "_solving")
 
 Solved = tuple[Asked, Adapted]
@@ -59,11 +63,17 @@ def armature(_adapted_file: Path) -> bpy.types.Object:
     return armature
 
 
-def _begun(armature: bpy.types.Object, solved: Solved, until: Callable[[], bool]) -> Task:
+def _begun(
+    armature: bpy.types.Object,
+    solved: Solved,
+    until: Callable[[], bool],
+    form: WrittenAs = WrittenAs.ACTION,
+) -> Task:
     """The writing of a result, in parts, as it is when something is reached."""
     asked, answer = solved
     session().solving = replace(Solving(), state=SolveState.SOLVING)
-    mine = replace(asked, uid=armature.session_uid)
+    options = replace(asked.result, written_as=form)
+    mine = replace(asked, uid=armature.session_uid, result=options)
     task = kept_in_scene(bpy.context, write_answer(mine, answer))
     while not until():
         next(task)
@@ -77,8 +87,12 @@ def _copied() -> bool:
 
 def _shown() -> bool:
     """The result is shown, and is looked at."""
-    armature = bpy.context.object
-    return bool(armature.animation_data.action.name.endswith(" adapted 2"))
+    return str(present(current_action(bpy.context.object)).name).endswith(" adapted 2")
+
+
+def _whole() -> bool:
+    """The result is in its form, and knows what it was made of; one part is left."""
+    return _shown() and bool(action_settings(bpy.context.object.hangtime.adapted).own_key)
 
 
 def _keys_of(action: bpy.types.Action, armature: bpy.types.Object) -> list[bytes]:
@@ -142,3 +156,51 @@ def test_what_others_made_meanwhile_stays(armature: bpy.types.Object, solved: So
         complete(task)
     assert not _copied()
     assert "Another's" in bpy.data.actions
+
+
+def _laid_out(armature: bpy.types.Object) -> list[object]:
+    """What an armature shows, and what others could: its action and slot, its tracks with their
+    strips, and the scene's end."""
+    data = armature.animation_data
+    tracks = [(t.name, t.mute, [(s.name, s.mute) for s in t.strips]) for t in data.nla_tracks]
+    slots = {a.name: [s.identifier for s in getattr(a, "slots", ())] for a in bpy.data.actions}
+    shown = (data.action, slot_identifier(armature), current_action(armature))
+    settings = armature.hangtime
+    kept = (settings.adapted, settings.take_strips, data.action_extrapolation)
+    return [*shown, *kept, tracks, slots, bpy.context.scene.frame_end]
+
+
+def _pushed_down(armature: bpy.types.Object) -> None:
+    """The artist has laid what is shown into a strip."""
+    _in_a_strip_besides(armature)
+    armature.animation_data.action = None
+
+
+def _in_a_strip_besides(armature: bpy.types.Object) -> None:
+    """The artist has laid what is shown into a strip, and assigned it again."""
+    data = armature.animation_data
+    strip = data.nla_tracks.new().strips.new("The artist's", 1, data.action)
+    if hasattr(strip, "action_slot"):
+        strip.action_slot = data.action_slot
+
+
+def _as_it_is(_armature: bpy.types.Object) -> None:
+    """The artist has no strips."""
+
+
+@pytest.mark.parametrize("lay", [_as_it_is, _pushed_down, _in_a_strip_besides])
+@pytest.mark.parametrize("form", FORMS)
+def test_after_a_fault_all_is_laid_out_as_it_was(
+    armature: bpy.types.Object,
+    solved: Solved,
+    form: WrittenAs,
+    lay: Callable[[bpy.types.Object], None],
+) -> None:
+    lay(armature)
+    bpy.context.scene.frame_end = int(JUMP_FRAMES[1])
+    was = _laid_out(armature)
+    task = _begun(armature, solved, _whole, form)
+    rename(armature)
+    with pytest.raises(Fault):
+        complete(task)
+    assert _laid_out(armature) == was
