@@ -57,6 +57,9 @@ class OutlastingStream(TextIOBase):
             except OSError as error:
                 self._lose(self._stream, error)
 
+    def close(self) -> None:
+        """Not the stream, which is another's and may be closed by then."""
+
     def _lose(self, stream: TextIO, error: OSError) -> None:
         """What the stream still holds goes nowhere: it is flushed once more when Python ends."""
         self.lost = error
