@@ -98,8 +98,8 @@ def _falls(performance: Performance) -> list[slice]:
 
 
 def _fall(performance: Performance, frames: slice) -> Plumb:
-    """What one tells: by the slope of velocities, whose errors are
-    independent, as those of places are not."""
+    """What one tells: by the slope of velocities, whose errors are independent, as those of places
+    are not."""
     times, com = performance.times[frames], performance.com[frames]
     velocity = np.diff(com, axis=0) / np.diff(times)[:, None]
     middles = 0.5 * (times[1:] + times[:-1])

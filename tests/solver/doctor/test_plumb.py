@@ -9,10 +9,11 @@ from hangtime.solver.body.character import build_character
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.plumb import Plumb, find_plumb
 from hangtime.solver.doctor.repairs import Repairs
-from hangtime.tests.helpers.clips import load_recording
+from hangtime.tests.helpers.clips import load_recording, mocap_path
 from hangtime.tests.helpers.doctored import jump, onto, sparse
 
 HOPS = "hops_in_place.bvh"
+CLIPS = sorted(path.name for path in mocap_path(HOPS).parent.glob("*.bvh"))
 
 
 def plumb(recording: Recording) -> Plumb | None:
@@ -31,6 +32,14 @@ def test_a_flight_tells_the_vertical(recorded: Recording, every: int) -> None:
     assert found is not None
     assert np.linalg.norm(degrees(found.slope)) < (0.7 if every == 1 else 1.2)
     assert not found.is_sloping
+
+
+@pytest.mark.parametrize(
+    "clip", sorted(path.name for path in mocap_path(HOPS).parent.glob("*.bvh"))
+)
+def test_no_recording_has_down_elsewhere(clip: str) -> None:
+    found = plumb(load_recording(clip))
+    assert found is None or np.linalg.norm(degrees(found.slope)) < 0.7
 
 
 @pytest.mark.parametrize("angle", [-20.0, 5.0, 30.0])
