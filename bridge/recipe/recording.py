@@ -15,7 +15,8 @@ missing = { 57 = 4, 103 = -36 } # after frame 57 four frames are missing: they a
 trim = 1                        # frames left out at the beginning of the whole clip
 trim_end = 60                   # and at its end; those that `frames` names are of what is left
 repair = ["full turns", "held frames", "exchanged legs", "exchanged arms", "flips",
-          "spikes", "bone lengths", "noise", "in place", "floating", "sinking"]
+          "spikes", "bone lengths", "noise", "level hips", "in place", "floating",
+          "sinking"]
 time_scale = 0.8                # durations times this: played 1.25 times too slowly
 scale = 0.625                   # lengths times this, which makes a person of 0.3 to 3 m
 drift = [0.1, 0.0]              # m/s along the floor, x and y, that is taken out; 15 at most

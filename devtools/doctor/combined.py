@@ -10,7 +10,7 @@ from ...solver.data.recording import Recording
 from .damages.damage import Damage, Damaged
 from .damages.every import DAMAGES
 from .damages.poses import noisy
-from .damages.whole_body import sliding
+from .damages.whole_body import in_place, levelled, sliding
 
 
 def both(first: Damage, second: Damage) -> Damage:
@@ -24,4 +24,9 @@ def both(first: Damage, second: Damage) -> Damage:
     return Damage(f"{first.name}, {second.name}", first.kind, do, also)
 
 
-ALONE_AND_COMBINED = (*DAMAGES, both(noisy(3.0, 1.0), sliding(0.2)))
+ALONE_AND_COMBINED = (
+    *DAMAGES,
+    both(noisy(3.0, 1.0), sliding(0.2)),
+    both(levelled(), in_place()),
+    both(noisy(3.0, 1.0), levelled()),
+)

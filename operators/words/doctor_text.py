@@ -43,8 +43,8 @@ SENTENCES = {
     FindingKind.BONE_LENGTH: "{part} changes its length by up to {n:.1f} cm {where}{end}.",
     FindingKind.NOISE: "The joints tremble by {n:.1f} mm from frame to frame, {part} most.",
     FindingKind.LEVEL_HIPS: "The hips keep one height, though the legs below them stretch and bend "
-    "by {n:.0f} % of their length: how the body rises and sinks was left out, so nothing it does "
-    "obeys gravity.",
+    "by {n:.0f} % of their length: how the body rises and sinks was left out, as in an export “In "
+    "Place” or in capture that tells all places from the hips, so nothing it does obeys gravity.",
     FindingKind.TIME_SCALE: "The body falls at {n:.1f} m/s² {where}, not at 9.8: {clock}.",
     FindingKind.RETIMED: "The body falls at {n:.1f} m/s² {where}, and at about 9.8 in other "
     "flights: that part was retimed, so {clock}.",
@@ -113,6 +113,7 @@ REMEDIES = {
     FindingKind.TILTED: "Turn Level",
     FindingKind.RISING: "Hold Level",
     FindingKind.SLIDING: "Hold Still",
+    FindingKind.LEVEL_HIPS: "Give the Height Back",
     FindingKind.IN_PLACE: "Give the Way Back",
     FindingKind.FLOATING: "Hold to the Ground",
     FindingKind.SINKING: "Lift Out",

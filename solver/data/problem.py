@@ -34,6 +34,7 @@ class Mend(Enum):
     SPIKES = "spikes"
     BONE_LENGTHS = "bone lengths"
     NOISE = "noise"
+    LEVEL_HIPS = "level hips"
     IN_PLACE = "in place"
     FLOATING = "floating"
     SINKING = "sinking"

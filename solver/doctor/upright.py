@@ -1,4 +1,4 @@
-"""The axis along which a figure stands, and whether its hips rise and sink with its legs."""
+"""The axis along which a figure stands."""
 
 from __future__ import annotations
 
@@ -13,9 +13,6 @@ from .finding import Finding, FindingKind
 from .repairs import Repairs, UpAxis
 
 UPRIGHT = 0.8  # of the way from feet to head, along one axis
-# Of the hips' height above the feet at rest. Honest hips rise by 0.06 of it in a walk, as feet do
-# below them; whoever sits has them at half of it.
-LEVEL, STEPS, STANDS = 0.002, 0.05, 0.7
 # Feet carry who walks in 0.8 of the time, who runs or hops in 0.2 to 0.5; along another axis the
 # joint that is lowest goes with the body.
 CARRIED, ELSEWHERE = 0.1, 0.5
@@ -63,21 +60,6 @@ def _carried(recording: Recording, figure: Figure, up: UpAxis, length: float) ->
     if goes.sum() < LEAST_GOING * recording.rate:
         return 0.0
     return float((speeds[np.arange(len(lowest)), lowest] < KEEPS)[goes].mean())
-
-
-def find_level_hips(recording: Recording, figure: Figure) -> Finding | None:
-    """Hips that keep one height above legs that stretch and bend: their rise was left out. Those of
-    who sits or lies are lower. recording: upright."""
-    feet = figure.of(Part.FOOT)
-    hips, lowest = recording.heads[:, figure.bones[0], 2], recording.heads[:, feet, 2].min(axis=1)
-    standing = recording.bones[figure.bones[0]].head[2] - min(
-        recording.bones[foot].head[2] for foot in feet
-    )
-    reach = hips - lowest
-    level = np.ptp(hips) < LEVEL * standing and np.median(reach) > STANDS * standing
-    if not level or np.ptp(reach) < STEPS * standing:
-        return None
-    return Finding(FindingKind.LEVEL_HIPS, 100.0 * float(np.ptp(reach) / standing), "%")
 
 
 def _along(way: FloatArray) -> UpAxis | None:

@@ -145,7 +145,7 @@ def raised(metres: float) -> Damage:
 
 
 def levelled() -> Damage:
-    """The hips' height left out, as exports in place may do."""
+    """The hips' height left out, as exports in place and capture that is relative to them do."""
 
     def do(recording: Recording, _: np.random.Generator) -> Damaged:
         hips = recording.heads[:, figure_of(recording).bones[0], 2]

@@ -37,14 +37,16 @@ from ..retimed import explained, find_retimed
 from ..stance.feet import find_sliding_feet
 from ..stance.footing import find_footing
 from ..stance.in_place import find_in_place
+from ..stance.level_hips import find_level_hips
 from ..stance.tilted import find_tilt
 from ..stretch import CUTTING, Span, longest_stretch
-from ..upright import find_level_hips, find_up
+from ..upright import find_up
 from .drifts import find_drifts
 from .ground import as_stood, beneath
 from .repair import GROUNDING, placed_skin, repaired, taken_out
 from .scales import find_scales
 from .settled import Stance, joined_remedies, remedy_of, settled
+from .without_height import find_what_is_left
 
 PARTING = (FindingKind.JUMP, FindingKind.LEAP)
 # What moves the feet along the floor with the body; where it is told they slide for that.
@@ -145,13 +147,26 @@ def diagnose(
     if jumps is not None:
         found.append(with_those_left(jumps, recording, figure, gaps))
     told(0.35)
-    for find in (find_lengths, find_noise):
-        recording = cured(recording, find(recording, figure))
+    recording = cured(recording, find_lengths(recording, figure))
+    noise, trembling = find_noise(recording, figure), recording
+    recording = cured(recording, noise)
     told(0.4)
     level = find_level_hips(recording, figure)
-    if level is not None:  # how it falls and stands is lost with their rise
-        return Diagnosis((*found, level))
     recording = scaled_recording(recording, 1.0 / size)
+    rides = bool(StandingGround.of(-np.inf, scene, recording).carriers)
+
+    def offered(findings: Iterable[Finding]) -> tuple[Finding, ...]:
+        """Of who rides on something it is told how he stands there, but mended is how he does so
+        in the world: no remedy is offered that would take the ride for it."""
+        return tuple(
+            replace(f, remedy=None) if rides and GROUNDING & {*remedy_of(f).mend} else f
+            for f in findings
+        )
+
+    if level is not None:
+        given = remedy_of(noise).joined(remedy_of(level))
+        left = find_what_is_left(scaled_recording(trembling, 1.0 / size), given, chosen)
+        return Diagnosis((*found, *offered([level, *left])))
 
     @cache
     def performed(repairs: Repairs) -> Performance:
@@ -165,7 +180,6 @@ def diagnose(
         told(0.65)
         return find_contacts(performance, scene)
 
-    rides = bool(StandingGround.of(-np.inf, scene, recording).carriers)
     trusted, seconds = _trusted(found, rate), float(recording.times[-1])
 
     def stood(repairs: Repairs) -> Performance:
@@ -184,14 +198,6 @@ def diagnose(
         drifts = offered(moved(placed))
         placed = placed.joined(joined_remedies(drifts))
         return Stance(drifts, offered(find_footing(stood(placed), touched(placed))))
-
-    def offered(findings: Iterable[Finding]) -> tuple[Finding, ...]:
-        """Of who rides on something it is told how he stands there, but mended is how he does so
-        in the world: no remedy is offered that would take the ride for it."""
-        return tuple(
-            replace(f, remedy=None) if rides and GROUNDING & {*remedy_of(f).mend} else f
-            for f in findings
-        )
 
     def find_part(placed: Repairs) -> Finding | None:
         """A part that was retimed; where all is, none is told apart."""

@@ -30,11 +30,12 @@ from ..noise import smoothed
 from ..repairs import MissingFrames, Repairs, check_missing
 from ..stance.floating import held_to_the_ground
 from ..stance.in_place import with_its_way
+from ..stance.level_hips import with_its_height
 from ..stance.sinking import lifted_out
 from ..stretch import Span
 from ..upright import turn_upright
 
-GROUNDING = {Mend.IN_PLACE, Mend.FLOATING, Mend.SINKING}
+GROUNDING = {Mend.LEVEL_HIPS, Mend.IN_PLACE, Mend.FLOATING, Mend.SINKING}
 """What is mended in how the body stands, and not in its poses."""
 
 
@@ -107,9 +108,10 @@ def _without_rest_poses(recording: Recording, asked: tuple[float, float] | None)
 def grounded(
     recording: Recording, mend: Collection[Mend], chosen: Mapping[str, str] | None
 ) -> Recording:
-    """With its way along the floor, held to the ground, and lifted out of it, where these are
-    among what is to be mended; a single pose as it is. recording: in its right time, and without
-    drift. Raises MissingPart."""
+    """With its height and its way along the floor, held to the ground, and lifted out of it, where
+    these are among what is to be mended; a single pose as it is. Smoothed after it has its height:
+    that would blur the speeds at which the feet leave the ground, and land. recording: in its right
+    time, and without drift. Raises MissingPart."""
     wanted = [each for each in Mend if each in mend and each in GROUNDING]
     if not wanted or len(recording.frames) < 2:
         return recording
@@ -117,6 +119,10 @@ def grounded(
     recording = scaled_recording(recording, size)
     for each in wanted:
         match each:
+            case Mend.LEVEL_HIPS:
+                recording = with_its_height(recording, chosen)
+                if Mend.NOISE in mend:
+                    recording = smoothed(recording, figure_of(recording, chosen))
             case Mend.IN_PLACE:
                 recording = with_its_way(recording, chosen)
             case Mend.FLOATING:
@@ -232,9 +238,10 @@ def mended(
     recording: Recording, repairs: Repairs, chosen: Mapping[str, str] | None = None
 ) -> Recording:
     """With its poses mended; frames, clock and lengths stay, and so does how it floats; a single
-    pose as it is. Raises MissingPart."""
+    pose as it is, and what trembles where `grounded` smooths it. Raises MissingPart."""
     wanted = repairs.mend if len(recording.frames) > 1 else ()
-    poses = [mend for mend in Mend if mend in wanted and mend not in GROUNDING]
+    later = {Mend.NOISE, *GROUNDING} if Mend.LEVEL_HIPS in wanted else GROUNDING
+    poses = [mend for mend in Mend if mend in wanted and mend not in later]
     figure = figure_of(recording, chosen) if poses else None
     for mend in poses:
         assert figure is not None

@@ -14,7 +14,7 @@ from ...body.character import build_character
 from ...data.problem import Mend
 from ...data.recording import Recording
 from ...numerics.runs import runs
-from ...scene.belt import belt_speed
+from ...scene.belt import belt_speed, steady_speed
 from ..falls import in_the_air
 from ..finding import Finding, FindingKind
 from ..local_poses import spans
@@ -42,7 +42,8 @@ def find_in_place(performance: Performance) -> Finding | None:
     if far < LEAST_WAY:
         return None
     left = float(np.ptp(performance.centres[:, 0, :2] @ (way / far)))
-    steady = belt_speed(performance.times, contact_points(performance)[0]) is not None
+    by_toes = belt_speed(performance.times, contact_points(performance)[0])
+    steady = by_toes is not None or steady_speed(stood.velocities[:, :2]) is not None
     speeds = np.linalg.norm(stood.velocities[:, :2], axis=1)
     slides = speeds > DRIFT
     if left > max(KEPT, KEPT_SHARE * far if steady else 0.0) or not slides.any():

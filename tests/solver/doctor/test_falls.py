@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hangtime.devtools.doctor.damages.clock import slowed
-from hangtime.devtools.doctor.damages.whole_body import levelled, sized
+from hangtime.devtools.doctor.damages.whole_body import sized
 from hangtime.solver.analysis.analyse import agreed_rate
 from hangtime.solver.analysis.performance import find_contacts, perform
 from hangtime.solver.body.anatomy import Part, Side
@@ -15,10 +15,9 @@ from hangtime.solver.doctor.falls import find_scale
 from hangtime.solver.doctor.finding import FindingKind
 from hangtime.solver.doctor.local_poses import LocalPoses
 from hangtime.solver.doctor.repairs import Repairs
-from hangtime.solver.doctor.upright import find_level_hips
 from hangtime.solver.numerics.rotations import rotation_matrix
-from hangtime.tests.helpers.clips import JUMP, load_recording
-from hangtime.tests.helpers.doctored import character, figure, jump
+from hangtime.tests.helpers.clips import load_recording
+from hangtime.tests.helpers.doctored import character, jump
 
 
 @pytest.mark.parametrize("factor", [0.5, 0.8, 1.25, 2.0])
@@ -108,19 +107,6 @@ def test_a_walks_foot_that_floats_tells_no_clock(degrees: float) -> None:
     local.rotations[:, shank] @= rotation_matrix(np.outer(turned, [1.0, 0.0, 0.0]))
     kinds = {finding.kind for finding in diagnose(local.posed(walk)).findings}
     assert FindingKind.TIME_SCALE not in kinds
-
-
-@pytest.mark.parametrize("name", [JUMP, "run_1.bvh", "hops_in_place.bvh"])
-def test_hips_whose_height_was_left_out_are_told_and_no_clock(name: str) -> None:
-    damaged = levelled().of(load_recording(name)).recording
-    assert [finding.kind for finding in diagnose(damaged).findings] == [FindingKind.LEVEL_HIPS]
-
-
-def test_who_sits_may_keep_the_hips_level() -> None:
-    seated = levelled().of(jump()).recording
-    assert find_level_hips(seated, figure()) is not None
-    seated.heads[:, figure().of(Part.FOOT), 2] += 0.4
-    assert find_level_hips(seated, figure()) is None
 
 
 def test_what_is_carried_unseen_tells_no_clock() -> None:

@@ -26,7 +26,7 @@ from hangtime.solver.data.problem import ContactEdit, Mend, MotionProblem
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.scaling import scaled_recording
 from hangtime.solver.doctor.examination.diagnose import diagnose
-from hangtime.solver.doctor.examination.repair import repaired
+from hangtime.solver.doctor.examination.repair import GROUNDING, repaired
 from hangtime.solver.doctor.figure import figure_of
 from hangtime.solver.doctor.finding import FindingKind
 from hangtime.solver.doctor.repairs import Repairs
@@ -369,7 +369,7 @@ def test_what_stands_wrong_is_mended_in_any_size(mend: Mend, factor: float) -> N
     assert other.heads == pytest.approx(factor * one.heads, abs=1e-3 * factor)
 
 
-@pytest.mark.parametrize("mend", [Mend.IN_PLACE, Mend.FLOATING, Mend.SINKING])
+@pytest.mark.parametrize("mend", sorted(GROUNDING, key=lambda mend: mend.value))
 def test_a_single_pose_stays_as_it_is(mend: Mend) -> None:
     pose = jump().part(slice(0, 1))
     assert repaired(pose, Repairs(mend=(mend,))).heads == pytest.approx(pose.heads)
