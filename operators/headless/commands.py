@@ -90,7 +90,8 @@ def parser() -> argparse.ArgumentParser:
         "--write-recipe", type=Path, metavar="FILE", help="leave a recipe to start from"
     )
     doctoring = commands.add_parser("doctor", help="tell what is wrong with a clip, and remedies")
-    doctoring.set_defaults(act=doctor, recipe=None)
+    doctoring.set_defaults(act=doctor)
+    doctoring.add_argument("--recipe", type=Path, help="whose [file] and bones count")
     doctoring.add_argument("--json", action="store_true", help="print it for a program")
     doctoring.add_argument(
         "--write-recipe", type=Path, metavar="FILE", help="leave a recipe that repairs the clip"
@@ -181,7 +182,7 @@ def adapt(options: argparse.Namespace) -> None:
 
     Raises NoSolution, having written the report, and any other Fault having written nothing.
     """
-    recipe = parse_recipe(read_recipe_text(options.recipe), str(options.recipe))
+    recipe = _recipe(options)
     clip, problem = _clip(options, recipe), overridden(recipe.problem, options)
     wanted, keys = recipe.result or ResultOptions(), recipe.keys or KeyOptions()
     export = recipe.export or ExportOptions()
@@ -222,11 +223,8 @@ def _delivered(outbox: Outbox, inputs: Iterable[Path]) -> list[str]:
 
 def analyze(options: argparse.Namespace) -> None:
     """Prints what a clip holds; leaves a recipe where asked. Raises Fault."""
-    asked = Recipe(MotionProblem())
-    if options.recipe is not None:
-        asked = parse_recipe(read_recipe_text(options.recipe), str(options.recipe))
-    problem = overridden(asked.problem, options)
-    clip = _clip(options, asked)
+    asked = _recipe(options)
+    clip, problem = _clip(options, asked), overridden(asked.problem, options)
     loaded = load(clip, problem, Stages(sys.stdout), asked.repairs)
     _ask_about(problem, loaded, asked.repairs)
     print()
@@ -261,15 +259,28 @@ def _ask_about(problem: MotionProblem, loaded: LoadedClip, repairs: Repairs | No
 
 
 def doctor(options: argparse.Namespace) -> None:
-    """Prints what is wrong with a clip; leaves a recipe where asked. Raises Fault."""
-    asked = Recipe(MotionProblem())
-    clip, problem = _clip(options, asked), overridden(asked.problem, options)
+    """Prints what is wrong with a clip as it was recorded; leaves a recipe where asked.
+
+    A recipe tells how the clip is read and which bone is which; its frames are counted in what its
+    own repairs leave, so neither counts. Raises Fault.
+    """
+    asked = _recipe(options)
+    as_recorded = MotionProblem(bones=asked.problem.bones)
+    clip, problem = _clip(options, asked), overridden(as_recorded, options)
     examination = examined(clip, problem, options.mass)
     print(told(examination, as_json=options.json), end="")
     target: Path | None = options.write_recipe
     if target is not None:
         write_recipe_of(examination, target)
         print(f"\nWritten:\n  {target}", file=sys.stderr if options.json else sys.stdout)
+
+
+def _recipe(options: argparse.Namespace) -> Recipe:
+    """The recipe given, else one that says nothing. Raises BadRecipe."""
+    path: Path | None = options.recipe
+    if path is None:
+        return Recipe(MotionProblem())
+    return parse_recipe(read_recipe_text(path), str(path))
 
 
 def _clip(options: argparse.Namespace, recipe: Recipe) -> Clip:

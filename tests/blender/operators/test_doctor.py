@@ -59,6 +59,22 @@ def test_what_is_said_of_the_file_is_not_guessed(capsys) -> None:
     assert capsys.readouterr().out == "Nothing is wrong with the recording.\n"
 
 
+def test_a_recipe_tells_how_a_clip_is_read_that_is_examined_as_recorded(
+    tmp_path: Path, capsys
+) -> None:
+    recipe, mend = tmp_path / "jump.toml", tmp_path / "mend.toml"
+    told = f'[bones]\nhead = "Head"\n[file]\nunit = {TOO_LARGE}\nup = "Y"\n'
+    recipe.write_text(told + "[recording]\nscale = 0.47\n")
+    options = ["--recipe", str(recipe), *FRAMES, "--write-recipe", str(mend)]
+    assert main(["doctor", str(mocap_path(CLIP)), *options]) == 0
+    said = capsys.readouterr().out
+    assert "guessed" not in said
+    assert "remedy: scale = 0.47" in said
+    written = parse_recipe(mend.read_text(encoding="utf-8"))
+    assert written.problem.bones == {"head": "Head"}
+    assert written.file == FileReading(unit=TOO_LARGE, up="Y")
+
+
 @pytest.mark.slow
 def test_more_frames_than_the_file_announces_are_told(tmp_path: Path, capsys) -> None:
     text, clip = mocap_path(CLIP).read_text(), tmp_path / "longer.bvh"
