@@ -182,7 +182,7 @@ class HangtimeSettings(bpy.types.PropertyGroup):
         target(
             "Requests",
             "A text with limits, poses, torques, loads and whatever else a recipe may ask "
-            "for beside what the panels have; see the manual's page of recipes",
+            "for beside what the panels have; see Recipes on the manual's page Scripting",
             type=bpy.types.Text,
         )
     )

@@ -10,6 +10,8 @@ take = "Jump"                   # which, of an FBX file that holds several
 
 [recording]
 up = "Y"                        # the axis, as it was read, that is to become Z; "-X" ...
+tilt = [0.2, -1.5]              # degrees by which its floor slopes upwards along x and y, once Z is
+                                # up, which is turned level; 30 at most
 missing = { 57 = 4, 103 = -36 } # after frame 57 four frames are missing: they are put in; after
                                 # frame 103 thirty-six are too many: they are taken out
 trim = 1                        # frames left out at the beginning of the whole clip

@@ -183,8 +183,8 @@ class AcceptOperator(_OfSettledResult, bpy.types.Operator):
     bl_idname = OperatorId.ACCEPT
     bl_label = "Accept"
     bl_description = (
-        "Keep the result that is shown, for export. Results that are not "
-        "accepted are dropped by Blender when the file is saved and opened again"
+        "Keep the result that is shown, for export. When the file is saved and opened again, of "
+        "results that are not accepted only the one that was shown is left"
     )
     bl_options = {"REGISTER", "UNDO"}
 

@@ -1,6 +1,9 @@
 """Repairs of the recording in a recipe."""
 
+import re
+
 import pytest
+from hangtime.bridge.recipe import recording
 from hangtime.bridge.recipe.problem import parse_recipe, parse_text, write_recipe
 from hangtime.bridge.recipe.recording import FILE, RECORDING, FileReading
 from hangtime.bridge.recipe_syntax.toml_text import sections
@@ -18,6 +21,11 @@ FULL = Repairs(
 def test_repairs_come_back() -> None:
     texts = sections(RECORDING.header, RECORDING.write(FULL))
     assert parse_recipe("\n".join(texts)).repairs == FULL
+
+
+@pytest.mark.parametrize("key", [*FILE.keys, *RECORDING.keys])
+def test_every_key_is_at_the_top_of_the_module(key: str) -> None:
+    assert re.search(rf"^{key} = ", recording.__doc__ or "", re.MULTILINE)
 
 
 def test_how_a_file_is_read_comes_back() -> None:

@@ -268,6 +268,17 @@ def test_the_sidebar_is_about_the_active_armature_unless_pinned() -> None:
     assert chosen_armature(bpy.context) == first  # worked on last
 
 
+def test_a_script_pins_first_and_then_says_which_armature() -> None:
+    """As the manual's page on scripting has it."""
+    rigs.reset()
+    first, second = rigs.make_armature(), rigs.make_armature()
+    own = bpy.context.scene.hangtime
+    bpy.context.view_layer.objects.active = second
+    own.pinned = True
+    own.armature = first
+    assert chosen_armature(bpy.context) == first
+
+
 def test_a_failure_is_a_short_line_with_what_is_furthest_off_first() -> None:
     worst = (
         Violation("Right Hand", RowKind.POINT, 420.0),
