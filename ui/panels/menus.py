@@ -7,41 +7,10 @@ import bpy
 from ...bridge.accessors import present
 from ...bridge.constraint_kinds import KINDS, cone, contact_force, torque_limit
 from ...bridge.constraints.bone_presets import preset_names
-from ...bridge.rows.choices import BodyKind
+from ...bridge.rows.choices import BodyKind, SurfaceRole
 from ...bridge.rows.kind import Icon, MenuGroup
 from ...operators.names import OperatorId
-from .lists import ICONS
-
-GROUPS = (
-    (OperatorId.FIND_BONES, OperatorId.ANALYZE, OperatorId.FIT),
-    (OperatorId.ADD_CONTACT, OperatorId.DRAG_PIN, OperatorId.PLACE_BY_EMPTY, OperatorId.PUT_BACK),
-    (OperatorId.ADAPT, OperatorId.REFINE, OperatorId.USE_BEST, OperatorId.CANCEL),
-    (
-        OperatorId.COMPARE,
-        OperatorId.SHOW_RECORDING,
-        OperatorId.SHOW_ADAPTED,
-        OperatorId.ACCEPT,
-        OperatorId.DISCARD,
-        OperatorId.SHOW_REPORT,
-    ),
-    (
-        OperatorId.EXPORT,
-        OperatorId.EXPORT_RECIPE,
-        OperatorId.SAVE_PLOTS,
-    ),
-)
-
-
-class HangtimeMenu(bpy.types.Menu):
-    bl_idname = "HANGTIME_MT_hangtime"
-    bl_label = "Hangtime"
-
-    def draw(self, _context: bpy.types.Context) -> None:
-        layout = present(self.layout)
-        for group in GROUPS:
-            for operator in group:
-                layout.operator(operator)
-            layout.separator()
+from .lists import ICONS, ROLE_ICONS
 
 
 class AddConstraintMenu(bpy.types.Menu):
@@ -132,6 +101,73 @@ class AddBodyChangeMenu(bpy.types.Menu):
                 OperatorId.ADD_BODY_CHANGE, text=kind.value, icon=ICONS[kind.name]
             )
             entry.kind = kind.name
+
+
+class AddSurfaceMenu(bpy.types.Menu):
+    bl_idname = "HANGTIME_MT_add_surface"
+    bl_label = "Add Surface"
+    bl_description = "Let objects of the scene be solid"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = present(self.layout)
+        for collection, what in ((False, "Selected"), (True, "Active Collection")):
+            for role in SurfaceRole:
+                text = f"{what} as {role.value}"
+                icon: Icon = "OUTLINER_COLLECTION" if collection else ROLE_ICONS[role.name]
+                entry = layout.operator(OperatorId.ADD_SURFACES, text=text, icon=icon)
+                entry.role, entry.collection = role.name, collection
+            layout.separator()
+
+
+GROUPS: tuple[tuple[OperatorId | type[bpy.types.Menu], ...], ...] = (
+    (OperatorId.FIND_BONES, OperatorId.EXAMINE, OperatorId.REPAIR_ALL, OperatorId.ANALYZE),
+    (
+        OperatorId.ADD_CONTACT,
+        OperatorId.DRAG_PIN,
+        OperatorId.TURN_STANCE,
+        OperatorId.PLACE_BY_EMPTY,
+        OperatorId.PUT_BACK,
+    ),
+    (AddConstraintMenu, AddBodyChangeMenu, AddSurfaceMenu, OperatorId.ADD_SUPPORT_BOX),
+    (
+        OperatorId.ADAPT,
+        OperatorId.REFINE,
+        OperatorId.UPDATE,
+        OperatorId.FIT,
+        OperatorId.USE_BEST,
+        OperatorId.CANCEL,
+    ),
+    (
+        OperatorId.COMPARE,
+        OperatorId.SHOW_RECORDING,
+        OperatorId.SHOW_ADAPTED,
+        OperatorId.ACCEPT,
+        OperatorId.DISCARD,
+        OperatorId.SHOW_REPORT,
+    ),
+    (
+        OperatorId.EXPORT,
+        OperatorId.EXPORT_RECIPE,
+        OperatorId.SAVE_PLOTS,
+    ),
+)
+
+
+class HangtimeMenu(bpy.types.Menu):
+    """All that is about the armature, or adds a row; what is about one row is beside that alone."""
+
+    bl_idname = "HANGTIME_MT_hangtime"
+    bl_label = "Hangtime"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = present(self.layout)
+        for group in GROUPS:
+            for entry in group:
+                if isinstance(entry, OperatorId):
+                    layout.operator(entry)
+                else:
+                    layout.menu(entry.bl_idname)
+            layout.separator()
 
 
 def add(undo: ExitStack) -> None:

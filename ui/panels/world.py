@@ -6,7 +6,6 @@ from ...bridge.accessors import present
 from ...bridge.properties.settings import HangtimeSettings, scene_settings
 from ...bridge.properties.surface import HangtimeSurface
 from ...bridge.rows.choices import SurfaceRole
-from ...bridge.rows.kind import Icon
 from ...bridge.scene.members import is_gone
 from ...operators.lists.row_lists import RowList
 from ...operators.lists.support_box import offered, sized
@@ -14,27 +13,12 @@ from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
 from ...solver.data.solver_options import ShapeSource
 from ..drawing.wrapping import wrapped
-from .lists import MET_ICONS, ROLE_ICONS, SurfaceList
+from .lists import MET_ICONS, SurfaceList
+from .menus import AddSurfaceMenu
 from .sidebar import ArmaturePanel, draw_list, lines, settings_in, split
 
 GONE = "Not in the scene any more"
 UNSEEN = "Something unseen carries the body above the floor"
-
-
-class AddSurfaceMenu(bpy.types.Menu):
-    bl_idname = "HANGTIME_MT_add_surface"
-    bl_label = "Add Surface"
-    bl_description = "Let objects of the scene be solid"
-
-    def draw(self, _context: bpy.types.Context) -> None:
-        layout = present(self.layout)
-        for collection, what in ((False, "Selected"), (True, "Active Collection")):
-            for role in SurfaceRole:
-                text = f"{what} as {role.value}"
-                icon: Icon = "OUTLINER_COLLECTION" if collection else ROLE_ICONS[role.name]
-                entry = layout.operator(OperatorId.ADD_SURFACES, text=text, icon=icon)
-                entry.role, entry.collection = role.name, collection
-            layout.separator()
 
 
 class WorldPanel(ArmaturePanel):
