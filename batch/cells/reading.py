@@ -94,7 +94,7 @@ def read_clip(
     recording = placed(
         mended(recording, mend, problem.bones), Repairs(drift=mend.drift, rise=mend.rise)
     )
-    recording = grounded(recording, mend.mend, problem.bones)
+    recording = grounded(recording, mend.mend, problem.bones, problem.height)
     return ReadClip(recording, origin, problem, metres, axis, whole)
 
 

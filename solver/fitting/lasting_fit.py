@@ -19,6 +19,7 @@ from ..numerics.runs import runs
 from ..optimisation.sqp import Progress
 from ..transcription.ride import Ride
 from ..transcription.rows import Rows
+from ..unseen.free_fall import clear_falls
 from .fit import Fit, LetGo, fit
 
 MAX_ROUNDS = 6  # then everything is let go
@@ -26,6 +27,7 @@ WORST_SHARE = 0.5  # of the worst contact's miss: who misses more is let go with
 FAR = 0.03  # m, rms over joint centres; further off it is doubted what carried it
 OFF_PARABOLA = 0.03  # m, by which the recorded centre of mass leaves the fit's parabola
 MUCH_NEARER = 0.8  # times as far: what something unseen must gain
+AGAINST_A_FALL = 0.5  # likewise, where the recorded centre of mass clearly falls in a flight
 CONTRADICTORY = 1e-3  # m; contacts that miss by less follow what else does not hold
 
 Rides = Callable[[ContactSchedule], Sequence[Ride | None]]
@@ -89,7 +91,10 @@ def _nearer(
     if told.unseen == found.schedule.unseen:
         return found
     again = fit(found.performance, told, rides=rides(told), progress=progress)
-    return again if again.solved and _off(again) < MUCH_NEARER * _off(found) else found
+    performance, flights = found.performance, found.schedule.flights
+    falls = clear_falls(performance.times, performance.com, flights)
+    least = AGAINST_A_FALL if any(fall in doubted for fall in falls) else MUCH_NEARER
+    return again if again.solved and _off(again) < least * _off(found) else found
 
 
 def _off(found: Fit, start: float = 0.0, end: float = np.inf) -> float:

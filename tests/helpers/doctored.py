@@ -5,6 +5,7 @@ from dataclasses import replace
 from functools import cache, partial
 
 import numpy as np
+from hangtime.solver.analysis.performance import perform
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.character import Character, build_character
 from hangtime.solver.data.recording import Recording
@@ -22,6 +23,7 @@ from hangtime.solver.doctor.frames.spikes import find_spikes
 from hangtime.solver.doctor.lengths import find_lengths
 from hangtime.solver.doctor.noise import find_noise
 from hangtime.solver.doctor.repairs import Repairs
+from hangtime.solver.numerics.rotations import rotation_matrix
 from hangtime.tests.helpers.clips import JUMP, load_recording
 
 STANDING = 73, 325  # frames, from standing to standing
@@ -91,3 +93,19 @@ def onto(metres: float) -> Recording:
     """The jump, onto something of such a height; from something of it, where that is below 0."""
     start, length = FLIGHT
     return climbed(jump(), metres, [start], length)
+
+
+def spun(
+    recording: Recording,
+    axis: FloatArray,
+    start: float,
+    end: float,
+    off: Sequence[float] = (0, 0, 0),
+) -> Recording:
+    """Turned once more about an axis (3,) from an instant, s, to another, at one speed, about a
+    point that is off the centre of mass by so many m, (3,)."""
+    about = perform(recording, build_character(recording)).com[:, None] + np.asarray(off, float)
+    share = np.clip((recording.times - start) / (end - start), 0.0, 1.0)
+    turn = rotation_matrix(2.0 * np.pi * share[:, None] * axis)
+    heads = about + np.einsum("tij,tbj->tbi", turn, recording.heads - about)
+    return replace(recording, heads=heads, rotations=turn[:, None] @ recording.rotations)

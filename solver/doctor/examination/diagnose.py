@@ -151,8 +151,8 @@ def diagnose(
     noise, trembling = find_noise(recording, figure), recording
     recording = cured(recording, noise)
     told(0.4)
-    level = find_level_hips(recording, figure)
-    recording = scaled_recording(recording, 1.0 / size)
+    level = find_level_hips(trembling, figure)  # smoothed after that is mended
+    recording = scaled_recording(recording if level is None else trembling, 1.0 / size)
     rides = bool(StandingGround.of(-np.inf, scene, recording).carriers)
 
     def offered(findings: Iterable[Finding]) -> tuple[Finding, ...]:
@@ -162,11 +162,6 @@ def diagnose(
             replace(f, remedy=None) if rides and GROUNDING & {*remedy_of(f).mend} else f
             for f in findings
         )
-
-    if level is not None:
-        given = remedy_of(noise).joined(remedy_of(level))
-        left = find_what_is_left(scaled_recording(trembling, 1.0 / size), given, chosen)
-        return Diagnosis((*found, *offered([level, *left])))
 
     @cache
     def performed(repairs: Repairs) -> Performance:
@@ -184,6 +179,33 @@ def diagnose(
 
     def stood(repairs: Repairs) -> Performance:
         return as_stood(performed(repairs), scene)
+
+    def keep() -> Span | None:
+        """What is worth keeping; without the rest, where the recording is parted."""
+        nonlocal recording
+        kept = _kept(found, frames, rate)
+        if kept is not None and any(finding.kind in PARTING for finding in found):
+            found[:] = _parted(found, frames, kept)
+            # How it stands elsewhere is no matter, and may differ.
+            recording = recording.window(*kept)
+            performed.cache_clear()
+            touched.cache_clear()
+        return kept
+
+    def diagnosis(height: float, kept: Span | None) -> Diagnosis:
+        """With the mass, where the stated one does not go with a height, m."""
+        fitting = None
+        if mass is not None and not (MASS_BY_SQUARE[0] < mass / height**2 < MASS_BY_SQUARE[1]):
+            fitting = USUAL_MASS_BY_SQUARE * height**2
+            found.append(Finding(FindingKind.MASS, mass, "kg"))
+        return Diagnosis(tuple(found), fitting, kept or Diagnosis.kept)
+
+    if level is not None:
+        kept = keep()
+        given = remedy_of(noise).joined(remedy_of(level))
+        left = find_what_is_left(stood, touched, given)
+        found += offered([level, *left])
+        return diagnosis(stood(joined_remedies(left)).character.height, kept)
 
     def moved(placed: Repairs) -> tuple[Finding, ...]:
         """Of hips whose own way was left out nothing else is told: falls are bent, too."""
@@ -213,13 +235,7 @@ def diagnose(
     near, torn = LEAP_WINDOW * recording.rate, _places(found, *GAPS)
     if leaps is not None and not _are_at(leaps, torn + (part.frames if part else ()), near):
         found.append(leaps)
-    kept = _kept(found, frames, rate)
-    if kept is not None and any(finding.kind in PARTING for finding in found):
-        found[:] = _parted(found, frames, kept)
-        recording = recording.window(*kept)  # how it stands elsewhere is no matter, and may differ
-        performed.cache_clear()
-        touched.cache_clear()
-
+    kept = keep()
     scales, stance = settled(scales, standing, performed, touched, trusted)
     found += scales
     seconds *= joined_remedies(scales).time_scale
@@ -234,12 +250,7 @@ def diagnose(
     feet = find_sliding_feet(stood(placed))
     if feet is not None and not any(finding.kind in WHOLE_BODY for finding in found):
         found.append(feet)
-    fitting = None
-    height = stood(placed).character.height
-    if mass is not None and not (MASS_BY_SQUARE[0] < mass / height**2 < MASS_BY_SQUARE[1]):
-        fitting = USUAL_MASS_BY_SQUARE * height**2
-        found.append(Finding(FindingKind.MASS, mass, "kg"))
-    return Diagnosis(tuple(found), fitting, kept or Diagnosis.kept)
+    return diagnosis(stood(placed).character.height, kept)
 
 
 def _kept(found: list[Finding], frames: FloatArray, rate: float) -> Span | None:

@@ -64,7 +64,8 @@ def as_asked(recording: Recording, problem: MotionProblem) -> Recording:
     """The recording with what a problem asks to be mended, in its own lengths, without drift from
     the problem's first frame on, held to the ground, and mirrored. Raises MissingPart,
     NotMirrored."""
-    still = grounded(_without_drift_as_asked(recording, problem), problem.mend, problem.bones)
+    still = _without_drift_as_asked(recording, problem)
+    still = grounded(still, problem.mend, problem.bones, problem.height)
     first = float(recording.frames[0]) if problem.frames is None else problem.frames[0]
     return mirrored(still, first) if problem.mirrored else still
 
@@ -74,7 +75,8 @@ def floated(recording: Recording, problem: MotionProblem, frame: float) -> tuple
     if not GROUNDING & set(problem.mend):
         return 0.0, 0.0, 0.0
     before = _without_drift_as_asked(recording, problem)
-    after = grounded(before, problem.mend, problem.bones)
+    moved = GROUNDING & set(problem.mend)  # and nothing smoothed
+    after = grounded(before, moved, problem.bones, problem.height)
     at = int(np.argmin(np.abs(before.frames - frame)))
     return tuple((before.heads[at, 0] - after.heads[at, 0]).tolist())
 
@@ -105,23 +107,33 @@ def _without_rest_poses(recording: Recording, asked: tuple[float, float] | None)
     return recording
 
 
+def smoothed_later(mend: Collection[Mend]) -> bool:
+    """Whether what trembles is smoothed once the hips have their height: it would blur the speeds
+    at which the feet leave the ground, and land."""
+    return Mend.LEVEL_HIPS in mend and Mend.NOISE in mend
+
+
 def grounded(
-    recording: Recording, mend: Collection[Mend], chosen: Mapping[str, str] | None
+    recording: Recording,
+    mend: Collection[Mend],
+    chosen: Mapping[str, str] | None,
+    stated: float | None = None,
 ) -> Recording:
     """With its height and its way along the floor, held to the ground, and lifted out of it, where
-    these are among what is to be mended; a single pose as it is. Smoothed after it has its height:
-    that would blur the speeds at which the feet leave the ground, and land. recording: in its right
-    time, and without drift. Raises MissingPart."""
+    these are among what is to be mended; a single pose as it is. recording: in its right time, and
+    without drift. stated: m, how tall the figure is, where its own lengths do not tell. Raises
+    MissingPart."""
     wanted = [each for each in Mend if each in mend and each in GROUNDING]
     if not wanted or len(recording.frames) < 2:
         return recording
-    size = person_factor(stature(recording, chosen))  # limits in metres are those of persons
+    height = stature(recording, chosen)  # limits in metres, and gravity, are those of persons
+    size = person_factor(height) if stated is None else stated / height
     recording = scaled_recording(recording, size)
     for each in wanted:
         match each:
             case Mend.LEVEL_HIPS:
                 recording = with_its_height(recording, chosen)
-                if Mend.NOISE in mend:
+                if smoothed_later(mend):
                     recording = smoothed(recording, figure_of(recording, chosen))
             case Mend.IN_PLACE:
                 recording = with_its_way(recording, chosen)
@@ -240,7 +252,7 @@ def mended(
     """With its poses mended; frames, clock and lengths stay, and so does how it floats; a single
     pose as it is, and what trembles where `grounded` smooths it. Raises MissingPart."""
     wanted = repairs.mend if len(recording.frames) > 1 else ()
-    later = {Mend.NOISE, *GROUNDING} if Mend.LEVEL_HIPS in wanted else GROUNDING
+    later = {Mend.NOISE, *GROUNDING} if smoothed_later(wanted) else GROUNDING
     poses = [mend for mend in Mend if mend in wanted and mend not in later]
     figure = figure_of(recording, chosen) if poses else None
     for mend in poses:

@@ -2,30 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
 
-from ...analysis.performance import perform
-from ...body.character import build_character
-from ...data.recording import Recording
+from ...analysis.performance import Performance
+from ...data.contacts import ContactSchedule
 from ..falls import Trusted, find_scale
-from ..finding import Finding
+from ..finding import Finding, FindingKind
 from ..repairs import Repairs
+from ..stance.footing import find_footing
 from ..stance.in_place import find_in_place
-from .repair import repaired
 from .settled import remedy_of
 
 
 def find_what_is_left(
-    recording: Recording, height: Repairs, chosen: Mapping[str, str] | None
+    stood: Callable[[Repairs], Performance],
+    touched: Callable[[Repairs], ContactSchedule],
+    height: Repairs,
 ) -> list[Finding]:
-    """A size that nobody has, and a way along the floor that was left out as well. How the body
-    falls and stands is reckoned, and tells nothing.
+    """A size that nobody has, another floor, and a way along it that was left out as well. How the
+    body falls, and what carries it, is reckoned, and tells nothing.
 
-    recording: in its own lengths. height: the remedy that gives it back. chosen: bones by parts of
-    the body. Raises MissingPart.
+    stood: the recording as it stands with repairs, and touched: its contacts. height: the remedy
+    that gives it back.
     """
-    no_falls = Trusted(fewest=len(recording.frames) + 1)
-    size = find_scale(perform(recording, build_character(recording, chosen=chosen)), no_falls)
-    mended = repaired(recording, height.joined(remedy_of(size)), chosen)
-    in_place = find_in_place(perform(mended, build_character(mended, chosen=chosen)))
-    return [finding for finding in (size, in_place) if finding is not None]
+    level = stood(Repairs())
+    size = find_scale(level, Trusted(fewest=len(level.times) + 1))
+    placed = height.joined(remedy_of(size))
+    footing = find_footing(stood(placed), touched(placed))
+    floor = next((each for each in footing if each.kind is FindingKind.FLOOR), None)
+    in_place = find_in_place(stood(placed.joined(remedy_of(floor))))
+    return [finding for finding in (size, in_place, floor) if finding is not None]

@@ -10,7 +10,7 @@ import numpy as np
 from ...arrays import FloatArray
 from ...data.constants import STANDARD_GRAVITY
 
-SHORTEST, LONGEST = 0.06, 1.0  # s, of a flight
+SHORTEST, LONGEST = 0.06, 1.2  # s, of a flight; a rise of 1.8 m
 STANCE = 0.08  # s, between two of them at least; a sprinter's lasts 0.1 s
 SLOPE = 0.05  # s, by which the speed is told with which the ground is left, and met
 BENT = 1.0 / 60.0  # s, on both sides, by which an acceleration is
@@ -109,7 +109,7 @@ class _Legs:
         """Those that go on to the clip's end, likewise."""
         shortest, longest = self._frames
         end = len(self.above) - 1
-        firsts = np.arange(max(end - longest, 0), end - shortest + 1)
+        firsts = np.arange(max(end - longest, 0), end - shortest + 1)[::-1]  # as late as may be
         for first in firsts[np.argsort(leaving[firsts], kind="stable")].tolist():
             yield _Arc(first, end, first, float(self.before[first]), leaving[first] + OPEN)
 
@@ -135,10 +135,9 @@ class _Legs:
 
 
 def _slopes(heights: FloatArray, rate: float) -> FloatArray:
-    """(T,) m/s, at each frame, of a parabola, or of a line where there are too few for one, through
-    it and those before it."""
+    """(T,) m/s, at each frame, of a parabola through it and those before it."""
     reach = max(round(SLOPE * rate), 2)
     since = np.arange(-reach, 1) / rate
-    weights = np.linalg.pinv(np.vander(since, 3 if reach > 2 else 2))[-2]
+    weights = np.linalg.pinv(np.vander(since, 3))[1]
     padded = np.pad(heights, (reach, 0), mode="edge")
     return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, reach + 1) @ weights)

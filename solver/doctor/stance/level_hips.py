@@ -32,38 +32,53 @@ def find_level_hips(recording: Recording, figure: Figure) -> Finding | None:
     """Hips that keep one height above legs that stretch and bend: their rise was left out. Those of
     who sits or lies are lower. recording: upright."""
     hips, feet = figure.bones[0], figure.of(Part.FOOT)
-    height, lowest = recording.heads[:, hips, 2], recording.heads[:, feet, 2].min(axis=1)
-    leg, reach = _leg(recording, hips, feet[0]), height - lowest
-    level = np.ptp(height) < LEVEL * leg and np.median(reach) > STANDS * leg
-    if not level or np.ptp(reach) < STEPS * leg:
+    lowest = recording.heads[:, feet, 2].min(axis=1)
+    leg, reach = _leg(recording, figure), recording.heads[:, hips, 2] - lowest
+    if not _are_level(recording, figure) or np.median(reach) < STANDS * leg:
+        return None
+    if np.ptp(reach) < STEPS * leg:
         return None
     bent = 100.0 * float(np.ptp(reach) / leg)
     remedy = Repairs(mend=(Mend.LEVEL_HIPS,))
     return Finding(FindingKind.LEVEL_HIPS, bent, "%", remedy=remedy)
 
 
-def _leg(recording: Recording, hips: int, foot: int) -> float:
-    """M, from the hips over the bones above a foot to it, however they lie at rest."""
-    bones, length, bone = recording.bones, 0.0, foot
-    while bone != hips and (parent := bones[bone].parent) is not None and parent >= 0:
+def _are_level(recording: Recording, figure: Figure) -> bool:
+    heights = recording.heads[:, figure.bones[0], 2]
+    return bool(np.ptp(heights) < LEVEL * _leg(recording, figure))
+
+
+def _leg(recording: Recording, figure: Figure) -> float:
+    """M, from the hips over the bones above a foot to it, however they lie at rest; the longer."""
+    return max(_way_up(recording, foot, figure.bones[0]) for foot in figure.of(Part.FOOT))
+
+
+def _way_up(recording: Recording, bone: int, hips: int) -> float:
+    bones, length = recording.bones, 0.0
+    while bone != hips and (parent := bones[bone].parent) >= 0:
         length += float(np.linalg.norm(bones[bone].head - bones[parent].head))
         bone = parent
     return length
 
 
 def with_its_height(recording: Recording, chosen: Mapping[str, str] | None) -> Recording:
-    """With the height over a floor at 0 at which the body stands, and falls. recording: in its
-    right size and time. chosen: bones by parts of the body. Raises MissingPart.
+    """With the height over one floor at which the body stands, and falls, where the hips are level;
+    else as it is. recording: in its right size and time. chosen: bones by parts of the body. Raises
+    MissingPart.
 
     Twice, as soles are told by feet that stand at one height: first by those that persons have.
     """
     figure = figure_of(recording, chosen)
+    if not _are_level(recording, figure):
+        return recording
+    middle = float(np.median(recording.heads[:, figure.bones[0], 2]))
     for lowest in (_lowest_joint, _lowest_point):
         performance = perform(recording, build_character(recording, chosen=chosen))
         com = performance.com[:, 2]
         lift = with_arcs(com - lowest(performance, figure), recording.rate) - com
         recording = replace(recording, heads=recording.heads + lift[:, None, None] * UP)
-    return recording
+    away = middle - float(np.median(recording.heads[:, figure.bones[0], 2]))
+    return replace(recording, heads=recording.heads + away * UP)  # the floor is where it was
 
 
 def _lowest_joint(performance: Performance, figure: Figure) -> FloatArray:

@@ -1,7 +1,5 @@
 """Which way is down, by flights."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hangtime.devtools.doctor.damages.whole_body import swaying, turned
@@ -12,9 +10,8 @@ from hangtime.solver.data.constants import UP
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.plumb import Plumb, find_plumb
 from hangtime.solver.doctor.repairs import Repairs
-from hangtime.solver.numerics.rotations import rotation_matrix
 from hangtime.tests.helpers.clips import load_recording, mocap_path
-from hangtime.tests.helpers.doctored import jump, onto, sparse
+from hangtime.tests.helpers.doctored import jump, onto, sparse, spun
 
 HOPS = "hops_in_place.bvh"
 CLIPS = sorted(path.name for path in mocap_path(HOPS).parent.glob("*.bvh"))
@@ -67,15 +64,7 @@ def test_who_stands_or_runs_falls_for_too_short_a_time() -> None:
 def test_who_twists_about_a_centre_that_is_a_little_off_falls_straight_down() -> None:
     """Less than a centimetre, as tables of masses differ, made a slope of 3.9° of a full twist."""
     recorded = load_recording("high_jump.bvh")
-    com = perform(recorded, build_character(recorded)).com
-    share = np.clip((recorded.times - 1.35) / 0.5, 0.0, 1.0)
-    turn = rotation_matrix(2.0 * np.pi * share[:, None] * UP)
-    away = np.einsum("tij,tbj->tbi", turn, recorded.heads - com[:, None] - [0.008, 0.0, 0.0])
-    twisted = replace(
-        recorded,
-        heads=com[:, None] + [0.008, 0.0, 0.0] + away,
-        rotations=turn[:, None] @ recorded.rotations,
-    )
+    twisted = spun(recorded, UP, 1.35, 1.85, off=(0.008, 0.0, 0.0))
     found = plumb(twisted)
     assert found is not None
     assert np.linalg.norm(degrees(found.slope)) > 1.6

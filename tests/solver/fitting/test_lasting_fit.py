@@ -10,7 +10,10 @@ from hangtime.devtools.checks.mujoco_check import check_motion, check_npz
 from hangtime.operators.words.headline import accepted_lines, headline
 from hangtime.operators.words.messages import sentence
 from hangtime.operators.words.report_text import as_text
+from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.pinned_places import pinned_places
+from hangtime.solver.arrays import FloatArray
+from hangtime.solver.data.constants import UP
 from hangtime.solver.data.contacts import PhaseKind
 from hangtime.solver.data.faults import FitNeedsSupport, UnknownPhase, UnseenSupport
 from hangtime.solver.data.problem import MotionProblem, Pin, Unseen
@@ -37,6 +40,7 @@ from hangtime.solver.worker.pipeline import (
 )
 from hangtime.solver.worker.stage_clock import StageClock
 from hangtime.tests.helpers.clips import JUMP, load_recording
+from hangtime.tests.helpers.doctored import spun
 from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, frames_of, hop
 from hangtime.tests.helpers.leaned import leaned
 
@@ -328,3 +332,21 @@ def test_a_contact_that_is_near_enough_is_accepted_and_told() -> None:
     assert all(0.01 < each.off_mm < 310.0 for each in needs.accepted)
     assert {each.limit_mm for each in needs.accepted} == {300.0}
     assert any("good enough" in line for line in accepted_lines(needs))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("axis", "carried"), [(UP, False), (np.array([1.0, 0.0, 0.0]), True)])
+def test_a_clear_fall_is_a_flight_unless_something_unseen_turns_the_body(
+    axis: FloatArray, *, carried: bool
+) -> None:
+    """A twist that the feet may give, and a somersault that the push-off had no turn for: with a
+    moment out of nowhere it is far nearer."""
+    still = analyse(load_recording(JUMP), MotionProblem()).schedule.flights[0]
+    turned = spun(load_recording(JUMP), axis, still.start + 0.02, still.end - 0.02)
+    analysis = analyse(turned, MotionProblem())
+    found = lasting_fit(analysis.performance, analysis.schedule, lambda s: [None] * len(s.contacts))
+    assert found.solved
+    assert bool(found.schedule.unseen) is carried
+    assert len(found.schedule.flights) == (not carried)
+    apart = found.motion.joint_centres(turned.times) - analysis.performance.centres
+    assert np.sqrt((apart**2).sum(axis=2).mean()) < 0.04

@@ -4,16 +4,18 @@ import numpy as np
 import pytest
 from hangtime.devtools.doctor.combined import both
 from hangtime.devtools.doctor.damages.poses import noisy
-from hangtime.devtools.doctor.damages.whole_body import in_place, levelled
+from hangtime.devtools.doctor.damages.whole_body import in_place, joined, levelled, raised
 from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.constants import STANDARD_GRAVITY, UP
+from hangtime.solver.data.problem import Mend, MotionProblem
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.scaling import scaled_recording
 from hangtime.solver.doctor.examination.diagnose import diagnose
-from hangtime.solver.doctor.examination.repair import repaired
+from hangtime.solver.doctor.examination.repair import as_asked, repaired
 from hangtime.solver.doctor.finding import FindingKind
+from hangtime.solver.doctor.repairs import Repairs
 from hangtime.solver.doctor.stance.arcs import UNDER, with_arcs
 from hangtime.solver.doctor.stance.level_hips import find_level_hips
 from hangtime.tests.helpers.clips import JUMP, load_recording
@@ -22,6 +24,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 RATE = 120.0
+HEIGHT = Repairs(mend=(Mend.LEVEL_HIPS,))
 
 
 def vertical_jump(speed: float) -> tuple[FloatArray, FloatArray]:
@@ -102,11 +105,55 @@ def test_the_speed_at_which_feet_leave_is_told_before_what_trembles_is_smoothed(
     assert bent(mended, damaged.original) < 0.025
 
 
-def test_a_size_that_nobody_has_is_told_beside_it() -> None:
-    damaged = scaled_recording(levelled().of(jump()).recording, 100.0)
+@pytest.mark.parametrize("phase", range(5))
+def test_at_24_frames_a_second_a_jump_is_found_wherever_its_frames_fall(phase: int) -> None:
+    """By lines the speeds of a push were 0.6 m/s off, and two arcs were taken for its flight."""
+    original = load_recording(JUMP).part(slice(phase, None, 5))
+    mended = repaired(levelled().of(original).recording, HEIGHT)
+    assert bent(mended, original) < 0.02
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+def test_who_is_in_the_air_at_an_end_of_the_clip_flies_there(*, backwards: bool) -> None:
+    above, truth = vertical_jump(2.5)
+    half = slice(0, len(above) // 2)
+    turn = slice(None, None, -1) if backwards else slice(None)
+    assert with_arcs(above[half][turn], RATE)[turn] == pytest.approx(truth[half], abs=0.08)
+
+
+def test_a_sound_recording_stays_as_it_is() -> None:
+    assert repaired(jump(), HEIGHT).heads == pytest.approx(jump().heads)
+
+
+@pytest.mark.parametrize("metres", [-0.9, 0.4])
+def test_the_floor_is_told_where_it_is(metres: float) -> None:
+    """Capture that tells all from the hips has it below 0."""
+    damaged = raised(metres).of(levelled().of(jump()).recording).recording
     found = diagnose(damaged)
+    assert [each.kind for each in found.findings] == [FindingKind.LEVEL_HIPS, FindingKind.FLOOR]
+    assert found.findings[-1].amount == pytest.approx(metres, abs=0.02)
+    assert apart(repaired(damaged, found.repairs), jump()) < 0.02
+
+
+def test_a_stated_height_tells_how_fast_the_figure_falls() -> None:
+    small = scaled_recording(jump(), 0.7)
+    asked = MotionProblem(mend=HEIGHT.mend, height=1.75)
+    mended = as_asked(levelled().of(small).recording, asked)
+    assert bent(mended, small) < 0.01
+
+
+def test_two_takes_whose_hips_are_level_are_parted_too() -> None:
+    found = diagnose(joined(0.4).of(levelled().of(jump()).recording).recording)
+    assert {FindingKind.JUMP, FindingKind.LEVEL_HIPS} <= {each.kind for each in found.findings}
+    assert found.repairs.trims
+
+
+def test_a_size_and_a_mass_that_nobody_has_are_told_beside_it() -> None:
+    damaged = scaled_recording(levelled().of(jump()).recording, 100.0)
+    found = diagnose(damaged, mass=700.0)
     kinds = [finding.kind for finding in found.findings]
-    assert kinds == [FindingKind.LEVEL_HIPS, FindingKind.SIZE]
+    assert kinds == [FindingKind.LEVEL_HIPS, FindingKind.SIZE, FindingKind.MASS]
+    assert found.mass == pytest.approx(65.0, rel=0.2)
     assert apart(repaired(damaged, found.repairs), jump()) < 0.02
 
 
