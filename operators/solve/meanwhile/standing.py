@@ -33,10 +33,11 @@ class Kept:
 
     def found(self) -> bpy.types.Object:
         """Raises ArmatureGone."""
-        # What was deleted is in the file until that is saved, but in no scene.
-        there = (each for each in bpy.data.objects if each.users_scene)
-        armature = next((each for each in there if each.session_uid == self.uid), None)
-        if armature is None:
+        numbered = (each for each in bpy.data.objects if each.session_uid == self.uid)
+        armature = next(numbered, None)
+        # What was deleted is in the file until that is saved, but in no scene; which Blender looks
+        # for among all objects of all scenes, so that it is asked of this one alone.
+        if armature is None or not armature.users_scene:
             raise ArmatureGone(self.name)
         return armature
 
