@@ -82,12 +82,18 @@ def recorded_slot(
 
 def all_curves(action: bpy.types.Action) -> list[bpy.types.FCurve]:
     """F-curves of an action, of all of its slots where it has slots, but for results."""
+    return [curve for held in holders_of(action) for curve in held.fcurves]
+
+
+def holders_of(action: bpy.types.Action) -> list[bpy.types.Action | bpy.types.ActionChannelbag]:
+    """Containers of an action's F-curves, of all of its slots where it has slots, but for
+    results."""
     if not hasattr(action, "slots"):
-        return list(action.fcurves)
+        return [action]
     home = home_of(action)
     own = [slot for slot in action.slots if result_in(action, slot) is None]
     bags = [bag_of(*home)] if home is not None else [bag_of(action, slot) for slot in own]
-    return [curve for bag in bags if bag is not None for curve in bag.fcurves]
+    return [bag for bag in bags if bag is not None]
 
 
 def span_of(action: bpy.types.Action) -> tuple[float, float]:

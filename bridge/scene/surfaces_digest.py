@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from math import isclose
 from typing import Any
 from zlib import crc32
@@ -53,10 +53,16 @@ class Conditions:
     @staticmethod
     def of(armature: bpy.types.Object) -> Conditions:
         """What they are now."""
+        seen = Conditions.seen(armature)
+        return replace(seen, place=()) if is_moved(armature) else seen
+
+    @staticmethod
+    def seen(armature: bpy.types.Object) -> Conditions:
+        """What they are in the frame that is shown: the place, too, of an armature that moves."""
         scene = current_scene()
         metres = metres_per_unit(scene)
         scale = float(armature.matrix_world.median_scale)
-        place = () if _is_moved(armature) else tuple((metres * _matrix(armature)).ravel().tolist())
+        place = tuple((metres * _matrix(armature)).ravel().tolist())
         return Conditions(frames_per_second(scene), scale * metres, place)
 
     @staticmethod
@@ -103,8 +109,9 @@ def _matrix(thing: bpy.types.Object) -> FloatArray:
     return np.array(thing.matrix_world, float)[:3]
 
 
-def _is_moved(armature: bpy.types.Object) -> bool:
-    """Whether an armature's place is another at other frames, or with another take on show."""
+def is_moved(armature: bpy.types.Object) -> bool:
+    """Whether an armature's place is another at other frames, or with another take on show; which
+    takes a look at each curve of each take."""
     data, parent = armature.animation_data, armature.parent
     if len(armature.constraints) or (parent is not None and may_move(parent)):
         return True

@@ -9,7 +9,7 @@ import numpy as np
 
 from ....bridge.accessors import armature_data
 from ....bridge.repairs.analysed_state import BONES, PLACE
-from ....bridge.scene.surfaces_digest import Conditions
+from ....bridge.scene.surfaces_digest import Conditions, is_moved
 from ....solver.arrays import FloatArray
 from ....solver.data.faults import ArmatureGone
 
@@ -45,7 +45,7 @@ class Kept:
 @dataclass(frozen=True)
 class Standing:
     """What poses are read by: whether an armature is edited, its bones' names and where they are at
-    rest, (16 n,), and its place."""
+    rest, (16 n,), and its place in the frame that is shown."""
 
     edited: bool
     bones: tuple[str, ...]
@@ -59,15 +59,17 @@ class Standing:
         bones.foreach_get("matrix_local", rest)
         names = tuple(each.name for each in bones)
         edited = armature.mode == "EDIT"
-        return Standing(edited, names, rest.astype(float), Conditions.of(armature))
+        return Standing(edited, names, rest.astype(float), Conditions.seen(armature))
 
-    def since(self, before: Standing) -> tuple[str, ...]:
-        """In words, what is another than before; of edit mode only that it was entered."""
-        if self.edited and not before.edited:
+    def changed(self, armature: bpy.types.Object) -> tuple[str, ...]:
+        """In words, what of the armature is another now; of edit mode only that it was entered."""
+        standing = Standing.of(armature)
+        if standing.edited and not self.edited:
             return (EDITED,)
-        now, then = self.conditions, before.conditions
-        placed = now.resized(then) or now.moved(then)
-        found = {BONES: not self._has_bones_of(before), PLACE: placed, RATE: now.replayed(then)}
+        now, then = standing.conditions, self.conditions
+        # What moves it is asked last, for that is asked of all curves of all strips.
+        placed = now.resized(then) or (now.moved(then) and not is_moved(armature))
+        found = {BONES: not self._has_bones_of(standing), PLACE: placed, RATE: now.replayed(then)}
         return tuple(part for part, changed in found.items() if changed)
 
     def _has_bones_of(self, other: Standing) -> bool:

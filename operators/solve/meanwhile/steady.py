@@ -4,7 +4,7 @@ While the artist's recording is read nearly all events go on to Blender, edit mo
 """
 
 from collections.abc import Generator
-from contextlib import closing
+from contextlib import closing, suppress
 from typing import TypeVar
 
 import bpy
@@ -32,17 +32,17 @@ def steady(armature: bpy.types.Object, reading: Generator[A, None, T]) -> Genera
             except StopIteration as end:
                 result: T = end.value
                 return result
-            left = _standing(kept)
+            with suppress(ArmatureGone):  # of which the work tells
+                before = Standing.of(kept.found())
             yield part
-            found = None if isinstance(part, PendingRequest) else _standing(kept)
-            changed = found.since(left) if found is not None and left is not None else ()
+            changed = () if isinstance(part, PendingRequest) else _changed(kept, before)
             if changed:
                 raise ChangedWhileRead(kept.name, changed)
 
 
-def _standing(kept: Kept) -> Standing | None:
-    """None of one that is gone, of which the work tells."""
+def _changed(kept: Kept, before: Standing) -> tuple[str, ...]:
+    """In words; nothing of one that is gone, of which the work tells."""
     try:
-        return Standing.of(kept.found())
+        return before.changed(kept.found())
     except ArmatureGone:
-        return None
+        return ()

@@ -77,7 +77,7 @@ class _Needed:
         for uid, name in (self._source | self._made).items():
             if uid not in actions:
                 raise ActionGone(name)
-        changed = Standing.of(armature).since(self._standing)
+        changed = self._standing.changed(armature)
         if EDITED in changed:
             raise EditedMeanwhile(armature.name)
         if changed:
