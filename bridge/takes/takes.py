@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from ..accessors import HOLDS, current_action, made_for, root_of, source_of
+from ..accessors import HOLDS, current_action, made_for, present, root_of, source_of
 from ..action_slots import copied_slots, lost_slot, settle_copy
 from ..armature.actions import recorded_action, show
 from ..armature.fcurves import slot_identifier
@@ -57,6 +57,7 @@ _NOT_ASKED = (  # of the next result
 )
 _NOT_KEPT = ("marks", "adapted", "source", MARKS.name, *_OF_RECORDING)
 SPANS = spans_text("spans")
+_Results = dict["bpy.types.Action", list["bpy.types.Action"]]
 _LONGEST = 63 - len(" adapted 99")  # bytes of a name of which the rest is ours
 
 
@@ -163,21 +164,23 @@ def takes_of(armature: bpy.types.Object) -> tuple[ListedTake, ...]:
     line = [shown]
     while (source := source_of(line[-1])) is not None:
         line.append(source)
-    return tuple(_branch(armature, line, line[-1], 0))
+    listed = {
+        source: [each for each in results if each in line or made_for(armature, each)]
+        for source, results in _results().items()
+    }
+    return tuple(_branch(line[-1], shown, listed, 0))
 
 
 def _branch(
-    armature: bpy.types.Object, line: list[bpy.types.Action], action: bpy.types.Action, depth: int
+    action: bpy.types.Action, shown: bpy.types.Action, made: _Results, depth: int
 ) -> list[ListedTake]:
-    """A take and what was made from it. line: the shown one and what that was made from."""
-    kept, shown = action_settings(action), line[0]
+    """A take and what was made from it. made: the results that are listed."""
+    kept = action_settings(action)
     found = [
         ListedTake(action, source_of(action), depth, action == shown, kept.stale, kept.polished)
     ]
-    own = results_from(action, armature)
-    for other in results_from(action):
-        if other in own or other in line:
-            found += _branch(armature, line, other, depth + 1)
+    for other in made.get(action, ()):
+        found += _branch(other, shown, made, depth + 1)
     return found
 
 
@@ -186,10 +189,18 @@ def results_from(
 ) -> list[bpy.types.Action]:
     """The results that were made from a take, the newest last. armature: for which; None for
     any."""
-    found = [o for o in bpy.data.actions if source_of(o) == action and not lost_slot(o)]
-    if armature is not None:
-        found = [o for o in found if made_for(armature, o)]
-    return sorted(found, key=lambda other: int(action_settings(other).count))
+    found = _results().get(action, [])
+    return [each for each in found if armature is None or made_for(armature, each)]
+
+
+def _results() -> _Results:
+    """All results in the file, by what they were made from, the newest last. It takes a look at
+    every action: one serves for all takes of a list, which is drawn often."""
+    results = [o for o in bpy.data.actions if source_of(o) is not None and not lost_slot(o)]
+    found: _Results = {}
+    for each in sorted(results, key=lambda result: int(action_settings(result).count)):
+        found.setdefault(present(source_of(each)), []).append(each)
+    return found
 
 
 def show_take(armature: bpy.types.Object, action: bpy.types.Action) -> None:
