@@ -210,6 +210,12 @@ def test_a_key_that_is_no_number_is_named(value: float) -> None:
     assert (fault.value.bone, fault.value.frame) == ('sh"in', 7.0)
 
 
+def test_a_curve_without_keys_is_no_fault() -> None:
+    armature = animated_rig()
+    curves_of(armature)[0].keyframe_points.clear()
+    assert len(read_recording(armature).frames) > 1
+
+
 @pytest.mark.parametrize("scale", [(1, 1, 1.01), (-1, 1, 1), (-2, -2, -2), (0, 0, 0)])
 def test_bad_scale_is_refused_also_when_inherited(scale: tuple[float, float, float]) -> None:
     armature = animated_rig()
