@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from ..body.character import Character
 from ..body.kinematics import BodyPoint
 from ..scene.object_motion import ObjectMotion
 from ..scene.triangle_mesh import TriangleMesh
+from .bounds import ObjectBounds
 from .shape_changes import AS_IS, ShapeChanges
 from .shapes import FEET, SOLID_SHARE, Capsule, Capsules, capsules, floor_balls
 from .surfaces import WORLD, Closest, Placed, axes_in
@@ -49,6 +51,11 @@ class MeshSurface:
     motion: ObjectMotion
     shapes: Capsules
     names: tuple[str, ...]
+
+    @cached_property
+    def bounds(self) -> ObjectBounds:
+        """Of its mesh's box."""
+        return ObjectBounds.of(self.mesh, self.motion, self.shapes)
 
     def near(self, placed: Placed) -> tuple[IntArray, IntArray]:
         """By the mesh's box, and then by the distance of the axes' middles."""

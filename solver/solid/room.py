@@ -14,7 +14,8 @@ from ..data.contacts import Contact, ContactSchedule
 from ..data.faults import NoRoom
 from ..data.scene import SceneObject
 from ..numerics.rotations import unit
-from ..scene.triangle_mesh import TriangleMesh, placed_mesh
+from ..scene.boxes import still_near
+from ..scene.triangle_mesh import SHEET, TriangleMesh, placed_mesh
 from ..transcription.transcription import Transcription
 from .mesh_surface import scene_shapes
 from .shape_changes import ShapeChanges
@@ -39,8 +40,7 @@ def check_room(
     character, points = transcription.character, transcription.touching
     shapes = {s.body: s for s in scene_shapes(character, points, changes)}
     local = {c.contact.point: points[c.point] for c in transcription.contacts}
-    meshes = [(thing.name, placed_mesh(thing)) for thing in scene if not thing.moves]
-    for heel, toe in _standing(schedule.contacts) if meshes else ():
+    for heel, toe in _standing(schedule.contacts) if scene else ():
         names = [schedule.contacts[i].point for i in (heel, toe)]
         if not all(name in local for name in names):
             continue
@@ -57,11 +57,13 @@ def check_room(
         ankle = places[heel] + along * unit(places[toe] - places[heel]) + above * UP
         shank = _leaning(ankle, float(np.linalg.norm(foot.offset)))
         radius = shapes[foot.parent].radius
-        for name, mesh in meshes:
+        upright = shank[0]  # in an object, as all others are, that leaves no room
+        for thing in still_near(scene, upright, max(radius, SHEET)):
+            mesh = placed_mesh(thing)
             if _never_fits(mesh, shank, radius):
                 needed = above + float(np.linalg.norm(foot.offset) * np.cos(MOST_LEAN)) + radius
                 free = _free_above(mesh, places[heel], needed)
-                raise NoRoom(name, schedule.contacts[heel].name, free, needed)
+                raise NoRoom(thing.name, schedule.contacts[heel].name, free, needed)
 
 
 def _standing(contacts: Sequence[Contact]) -> Iterator[tuple[int, int]]:

@@ -7,14 +7,14 @@ them with what their Jacobian needs. Meshes are in mesh_surface.py, ways out of 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import accumulate
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..body.kinematics import Pose
 from ..scene.object_motion import ObjectMotion
+from .bounds import ManyBounds, ObjectBounds
 from .segments import closest_shares
 from .shapes import Capsules
 
@@ -22,6 +22,7 @@ WORLD = -1  # in place of a body
 CROSSED = 0.5  # of the radii: how far axes that crossed may be apart for the way back to be shorter
 OPPOSITE = 0.5  # the cosine beyond which a side is another one
 TOUCHING = 1e-4  # m between two axes, below which their separation points nowhere
+_NONE = np.empty(0, dtype=int)
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,16 @@ class Placed:
     times: FloatArray
     pose: Pose
     com: FloatArray
+
+    def at(self, instants: IntArray) -> "Placed":
+        """At some of the instants."""
+        return Placed(self.times[instants], self.pose.at(instants), self.com[instants])
+
+    @property
+    def joints(self) -> FloatArray:
+        """(2, N, 3) m, world: least and greatest of the joints' centres at each instant."""
+        centres = self.pose.centres
+        return np.asarray([centres.min(axis=1) + self.com, centres.max(axis=1) + self.com])
 
 
 def axes_in(
@@ -97,6 +108,10 @@ class Surface(Protocol):
     def names(self) -> tuple[str, ...]:
         """Of the items, such as "Left hand in right thigh"."""
 
+    @property
+    def bounds(self) -> ObjectBounds | None:
+        """Beyond which nothing is near; None where that cannot be told."""
+
     def near(self, placed: Placed) -> tuple[IntArray, IntArray]:
         """Instants (M,) and items (M,) whose distance may be negative."""
 
@@ -111,6 +126,7 @@ class OwnLimbs:
     shapes: Capsules
     pairs: IntArray
     names: tuple[str, ...]
+    bounds: ClassVar[None] = None
 
     def near(self, placed: Placed) -> tuple[IntArray, IntArray]:
         """Exactly those that are in each other."""
@@ -184,6 +200,7 @@ class Floor:
     balls: Capsules
     height: Callable[[FloatArray], FloatArray]
     names: tuple[str, ...]
+    bounds: ClassVar[None] = None
 
     def near(self, placed: Placed) -> tuple[IntArray, IntArray]:
         """Exactly those below."""
@@ -212,35 +229,45 @@ class Surfaces:
     """Several surfaces as one: items are counted on from each to the next."""
 
     parts: tuple[Surface, ...]
+    bounds: ClassVar[None] = None
 
-    @property
+    @cached_property
     def names(self) -> tuple[str, ...]:
         return tuple(name for part in self.parts for name in part.names)
 
+    @cached_property
+    def _first(self) -> IntArray:
+        """(P,) the parts' first items."""
+        counts = [len(part.names) for part in self.parts]
+        return np.cumsum([0, *counts[:-1]])
+
+    @cached_property
+    def _bounds(self) -> ManyBounds:
+        return ManyBounds([part.bounds for part in self.parts])
+
     def near(self, placed: Placed) -> tuple[IntArray, IntArray]:
-        """Of every part."""
-        found = [part.near(placed) for part in self.parts]
-        instants = np.concatenate([when for when, _ in found])
-        items = [items + first for (_, items), first in zip(found, self._first(), strict=True)]
-        return instants, np.concatenate(items)
+        """Of every part, which is asked about the instants at which it is not far."""
+        instants, items = [_NONE], [_NONE]
+        met = self._bounds.met(placed.times, placed.joints)
+        for k in np.flatnonzero(met.any(axis=1)).tolist():
+            part, at = self.parts[k], np.flatnonzero(met[k])
+            when, which = part.near(placed if part.bounds is None else placed.at(at))
+            instants.append(at[when])
+            items.append(which + self._first[k])
+        return np.concatenate(instants), np.concatenate(items)
 
     def closest(self, placed: Placed, instants: IntArray, items: IntArray) -> Closest:
         """Each item by its own part."""
         n = len(items)
         distance, apart, normal = np.empty(n), np.empty(n), np.empty((n, 3))
         bodies, at = np.empty((n, 2), dtype=int), np.empty((n, 2, 3))
-        for part, first in zip(self.parts, self._first(), strict=True):
-            mine = np.flatnonzero((items >= first) & (items < first + len(part.names)))
-            if not len(mine):
-                continue
-            found = part.closest(placed, instants[mine], items[mine] - first)
+        owner = np.searchsorted(self._first, items, side="right") - 1
+        for k in np.unique(owner).tolist():
+            mine = np.flatnonzero(owner == k)
+            found = self.parts[k].closest(placed, instants[mine], items[mine] - self._first[k])
             distance[mine], normal[mine], bodies[mine] = found.distance, found.normal, found.bodies
             at[mine], apart[mine] = found.at, found.apart
         return Closest(distance, normal, bodies, at, apart)
-
-    def _first(self) -> list[int]:
-        counts = [len(part.names) for part in self.parts]
-        return list(accumulate(counts[:-1], initial=0))
 
 
 def _directions(vectors: FloatArray) -> FloatArray:

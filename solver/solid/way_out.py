@@ -6,6 +6,7 @@ as its furthest face there, and what is beyond is out, from the first instant to
 """
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -35,6 +36,7 @@ class WayOut:
     by: FloatArray
     names: tuple[str, ...]
     sought: bool = True
+    bounds: ClassVar[None] = None
 
     @staticmethod
     def above(

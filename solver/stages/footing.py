@@ -14,7 +14,8 @@ from ..data.faults import StandsBelow, StandsIn, TooSteep
 from ..data.problem import MotionProblem, Pin
 from ..data.scene import SceneObject
 from ..fitting.fit import Fit
-from ..scene.triangle_mesh import placed_mesh
+from ..scene.boxes import still_near
+from ..scene.triangle_mesh import SHEET, placed_mesh
 from ..transcription.contact_pins import PointContact
 from ..transcription.motion import Motion
 
@@ -54,10 +55,10 @@ def check_sunk(scene: Sequence[SceneObject], schedule: ContactSchedule, footing:
         for i, contact in enumerate(schedule.contacts)
         if contact.name not in footing.pins and not contact.asked_for
     ]
+    if not loose:
+        return
     places = footing.places[loose]
-    for thing in scene if loose else ():
-        if thing.moves:
-            continue
+    for thing in still_near(scene, places, SHEET):
         mesh = placed_mesh(thing)
         deep = mesh.heights(places[:, :2]).z - places[:, 2]
         inside = (mesh.distances(places + SUNK * UP).distance < 0.0) & (deep > SUNK)
