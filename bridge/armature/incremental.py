@@ -6,7 +6,7 @@ Whoever has no interface to keep alive completes them at once.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
 from functools import partial
@@ -19,6 +19,7 @@ import numpy as np
 from ...solver.arrays import FloatArray
 from .poses import Poses, sample
 
+S = TypeVar("S")
 T = TypeVar("T")
 Incremental = Generator[float | None, None, T]
 """Long work in parts; where it knows, it yields how much is done, 0 to 1."""
@@ -98,6 +99,19 @@ def in_slices(
         of_frames = max(ended - began - going, 1e-9)
         count = max(fewest, int(count * min((SLICE_S + going) / of_frames, MOST_GROWTH)))
         yield min(at / len(frames), 1.0)
+    return found
+
+
+def one_by_one(things: Sequence[S], look: Callable[[S], T]) -> Incremental[list[T]]:
+    """What `look`, which changes nothing, finds of each of many things, a slice's time of them at
+    once."""
+    found: list[T] = []
+    began = perf_counter()
+    for thing in things:
+        found.append(look(thing))
+        if perf_counter() - began > SLICE_S:
+            yield len(found) / len(things)
+            began = perf_counter()
     return found
 
 

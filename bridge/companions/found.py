@@ -16,19 +16,16 @@ import numpy as np
 from ...solver.arrays import FloatArray
 from ..accessors import armature_data, current_scene
 from ..armature import fcurves
-from ..armature.channels import proper
-from ..armature.incremental import Incremental, sample_incrementally
+from ..armature.incremental import Incremental, one_by_one, sample_incrementally
 from ..armature.pose_basis import carrier_of
-from ..armature.poses import Poses, metres_per_unit
+from ..armature.poses import metres_per_unit
 from ..controls.driven import constrained
-from .moves import is_hidden
+from .followed import BodyAxes, extent, size_of
 
 _LOOKS = 150  # frames at most at which a take is looked at, spread evenly
 _KEYED = 0.001  # m, by which keys of a bone move it at least
 _TRAVELS = 0.02  # m, by which a root bone that travels is off its mean place
 _BESIDE = 0.5  # of that, by which the hips may be off their mean place over it
-_FOLLOWS = 0.005  # m, by which what follows a bone may move in its axes: exporters round
-_LEVER = 0.1  # m, by which turns count as places
 _MOVES = 0.05  # m, by which it moves at least: what both rest says nothing
 
 
@@ -70,13 +67,15 @@ def found_companions(
     over_pelvis, over_any = _above(armature, bodies[:1]), _above(armature, bodies)
     roots = [name for name in names if name in over_pelvis]
     root = next((name for name in roots if travels(places[name], places[bodies[0]])), None)
-    followers = [
-        (name, body)
-        for name in names
-        if name not in over_any and _extent(places[name]) > _MOVES
-        for body in _followed(armature, poses, name, bodies)
-    ]
-    return Companions(root, tuple(followers))
+    axes = BodyAxes.of(poses, bodies)
+
+    def followed(name: str) -> str | None:
+        return axes.followed(poses.matrices[:, poses.bones.index(name)], _above(armature, (name,)))
+
+    move = [name for name in names if name not in over_any and extent(places[name]) > _MOVES]
+    found = yield from one_by_one(move, followed)
+    followers = zip(move, found, strict=True)
+    return Companions(root, tuple((name, body) for name, body in followers if body is not None))
 
 
 def holders_of(
@@ -93,7 +92,7 @@ def placed_by_keys(
     """Bones, parents first, that keys of their location alone move, and that are neither bodies nor
     what carries the pelvis."""
     rest = armature_data(armature).bones
-    unit = metres_per_unit(current_scene()) * _size(np.array(armature.matrix_world))
+    unit = metres_per_unit(current_scene()) * size_of(np.array(armature.matrix_world))
     places = [c for c in curves.fcurves if c.data_path.endswith(".location") and not c.mute]
     keyed = {fcurves.bone_of(c.data_path) for c in places if _range(c) * unit > _KEYED}
     carrier = carrier_of(rest[bodies[0]]).name
@@ -128,36 +127,5 @@ def _frames(curves: fcurves.CurveHolder) -> FloatArray:
 
 def travels(root: FloatArray, pelvis: FloatArray) -> bool:
     """Whether a root travels over the floor, and the pelvis with it; places (T, 3), m."""
-    way = _extent(root[:, :2])
-    return way > _TRAVELS and _extent((pelvis - root)[:, :2]) < _BESIDE * way
-
-
-def _extent(places: FloatArray) -> float:
-    """How far places (T, n) are off their mean at most."""
-    return float(np.linalg.norm(places - places.mean(axis=0), axis=1).max())
-
-
-def _followed(
-    armature: bpy.types.Object, poses: Poses, name: str, bodies: tuple[str, ...]
-) -> list[str]:
-    """The bone of the body in whose axes a bone keeps its place, and turn, best, the nearest of
-    equal ones; none where it keeps no place. What hangs on a bone follows it anyway."""
-    hangs_on = _above(armature, (name,))
-    own = poses.matrices[:, poses.bones.index(name)]
-    found = []
-    for body in (each for each in bodies if each not in hangs_on):
-        matrices = poses.matrices[:, poses.bones.index(body)]
-        if is_hidden(own, matrices):
-            continue
-        unit = metres_per_unit(current_scene()) * _size(poses.object_to_world[0] @ matrices[0])
-        beside = np.linalg.solve(matrices, own)
-        places, turns = unit * beside[:, :3, 3], proper(beside[:, :3, :3]).reshape(-1, 9)
-        if _extent(places) < _FOLLOWS:
-            apart = _extent(places) + _LEVER * _extent(turns)
-            found.append((apart + _FOLLOWS * float(np.linalg.norm(places[0])), body))
-    return [min(found)[1]] if found else []
-
-
-def _size(matrix: FloatArray) -> float:
-    """Scale of a transformation (4, 4)."""
-    return float(np.cbrt(abs(np.linalg.det(matrix[:3, :3]))))
+    way = extent(root[:, :2])
+    return bool(way > _TRAVELS and extent((pelvis - root)[:, :2]) < _BESIDE * way)

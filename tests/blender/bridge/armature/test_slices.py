@@ -8,7 +8,7 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 from hangtime.bridge.armature import incremental
-from hangtime.bridge.armature.incremental import SLICE_S, complete, in_slices
+from hangtime.bridge.armature.incremental import SLICE_S, complete, in_slices, one_by_one
 
 FRAMES = np.arange(600.0)
 LONG_TAKE = (0.008, 2e-4)  # s to go there or back, and a frame; 2752 frames with 319 curves
@@ -73,3 +73,25 @@ def test_where_nothing_is_switched_a_slice_lasts_as_it_should(machine: Machine) 
     list(in_slices(FRAMES, machine.look, machine.showing))
 
     assert SLICE_S - 2e-4 < machine.longest < SLICE_S + 1e-9
+
+
+@pytest.mark.parametrize("machine", [(0.0, 0.5 * SLICE_S)], indirect=True)
+def test_many_things_are_looked_at_in_parts(machine: Machine) -> None:
+    """As a result's companions are, of which a face has hundreds."""
+
+    def look(thing: int) -> int:
+        machine.look(np.zeros(1))
+        return 2 * thing
+
+    slices, shares = one_by_one(range(12), look), list[float]()
+    while True:
+        try:
+            shares.append(next(slices) or 0.0)
+        except StopIteration as end:
+            found = end.value
+            break
+
+    assert found == [2 * thing for thing in range(12)]
+    assert len(shares) == 4
+    assert shares == sorted(shares)
+    assert complete(one_by_one((), look)) == []
