@@ -119,8 +119,8 @@ def _above(armature: bpy.types.Object, bones: Iterable[str]) -> set[str]:
 
 def _frames(curves: fcurves.CurveHolder) -> FloatArray:
     """Whole frames from the first key to the last, of which some where there are many."""
-    ends = [fcurves.keys(c)[[0, -1], 0] for c in curves.fcurves if len(c.keyframe_points)]
-    first, last = np.floor(np.min(ends)), np.ceil(np.max(ends))
+    ends = np.array([curve.range() for curve in curves.fcurves if len(curve.keyframe_points)])
+    first, last = np.floor(ends.min()), np.ceil(ends.max())
     count = min(int(last - first) + 1, _LOOKS)
     return np.asarray(np.linspace(first, last, count).round())
 
