@@ -3,8 +3,9 @@ that to them, for they weigh little and nothing stands on them."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, field, replace
 
 import bpy
 import numpy as np
@@ -14,6 +15,7 @@ from ...solver.body.character import Body
 from ...solver.data.recording import Bone, PoseTrack, Recording
 from ...solver.numerics.rotations import angles_between
 from ...solver.skeleton.parts import Part, Segment
+from ..armature.incremental import Incremental
 from ..armature.poses import sample
 from ..armature.read import recording_of
 from .driven import acting_on, beside_keys, driven_of, is_driven, turned_by_drivers
@@ -22,29 +24,41 @@ from .held import LOOKS, held_bones
 AIMABLE = (Part.NECK, Part.HEAD)
 
 
-def aimed_bones(
+@dataclass(frozen=True)
+class LedBones:
+    """Bones of a body that something poses otherwise than their own keys do. aimed: those of neck
+    and head, parents first, from the first on that is led: what hangs on one goes where that does.
+    held: those of the rest that `held_bones` finds."""
+
+    aimed: tuple[str, ...] = ()
+    held: Mapping[str, float] = field(default_factory=dict)
+
+
+def led_bones(
     armature: bpy.types.Object,
     bones: Sequence[Bone],
     segments: Sequence[Segment],
     frames: FloatArray,
-) -> tuple[str, ...]:
-    """Those of neck and head, parents first, from the first on that something poses otherwise than
-    its own keys do, at frames (T,) of what the armature shows: what hangs on one goes where that
-    does. None where controls pose the rest of the body.
+    showing: Callable[[], AbstractContextManager[object]] = nullcontext,
+) -> Incremental[LedBones]:
+    """Those at frames (T,) of what the armature shows, in slices; none where controls pose the body
+    below the neck. showing: as of `in_slices`.
 
     bones: the recording's. segments: the body's, the pelvis first.
     """
     if not beside_keys(armature):
-        return ()
+        return LedBones()
     bodies = [bones[segment.bone].name for segment in segments]
     above = [bones[s.bone].name for s in segments if s.part in AIMABLE]
-    if is_driven(armature, set(bodies).difference(above)):
-        return ()
-    held = held_bones(armature, above, frames)
-    led = {*driven_of(armature, above), *turned_by_drivers(armature, [bodies[0], *above])}
-    led.update(held[0] if held is not None else ())
+    with showing():
+        if is_driven(armature, set(bodies).difference(above)):
+            return LedBones()
+        led = {*driven_of(armature, above), *turned_by_drivers(armature, [bodies[0], *above])}
+    held = yield from held_bones(armature, bodies, frames, showing)
+    led |= held.keys()
     first = next((i for i, name in enumerate(above) if name in led), len(above))
-    return tuple(above[first:])
+    aimed = tuple(above[first:])
+    return LedBones(aimed, {name: at for name, at in held.items() if name not in aimed})
 
 
 def without(track: PoseTrack, bones: Sequence[str]) -> PoseTrack:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from functools import partial
 
 import bpy
 import numpy as np
@@ -10,8 +12,8 @@ import numpy as np
 from ...solver.arrays import BoolArray, FloatArray
 from ..accessors import armature_data, pose_of
 from ..armature.channels import proper
+from ..armature.incremental import Incremental, in_slices
 from ..armature.pose_basis import place
-from ..armature.poses import Poses, sample
 from .driven import chain_of
 from .posing import Posing
 
@@ -21,25 +23,25 @@ SHIFTED = 1e-3  # of the bone's length
 
 
 def held_bones(
-    armature: bpy.types.Object, bodies: Sequence[str], frames: FloatArray
-) -> tuple[tuple[str, ...], float] | None:
-    """Those of the bodies that are not where their channels put them, and the first frame of those
-    looked at, of frames (T,), where one is not; None where all are."""
-    names = [name for name in bodies if name in _held_at_all(armature)]
+    armature: bpy.types.Object,
+    bodies: Sequence[str],
+    frames: FloatArray,
+    showing: Callable[[], AbstractContextManager[object]] = nullcontext,
+) -> Incremental[dict[str, float]]:
+    """Those of the bodies that are not where their channels put them, each with the first frame of
+    those looked at, of frames (T,), where it is not; in slices. showing: as of `in_slices`."""
+    with showing():
+        held = _held_at_all(armature)
+    names = [name for name in bodies if name in held]
     if not names:
-        return None
+        return {}
     at = frames[np.unique(np.linspace(0, len(frames) - 1, LOOKS).round().astype(int))]
-    poses, posing, bases = sample(armature, at), Posing(armature, names, ()), []
-    with posing.kept():
-        for frame in at:
-            posing.go_to(float(frame))
-            bases.append(posing.bases())
-    own = zip(names, np.swapaxes(bases, 0, 1), strict=True)
-    off = np.stack([_off(armature, poses, name, each) for name, each in own])
-    if not off.any():
-        return None
-    first = float(at[np.flatnonzero(off.any(axis=0))[0]])
-    return tuple(name for name, each in zip(names, off, strict=True) if each.any()), first
+    off = np.concatenate((yield from in_slices(at, partial(_off, armature, names), showing)))
+    return {
+        name: float(at[each.argmax()])
+        for name, each in zip(names, off.T, strict=True)
+        if each.any()
+    }
 
 
 def _held_at_all(armature: bpy.types.Object) -> set[str]:
@@ -52,15 +54,30 @@ def _held_at_all(armature: bpy.types.Object) -> set[str]:
     return found
 
 
-def _off(armature: bpy.types.Object, poses: Poses, name: str, bases: FloatArray) -> BoolArray:
-    """(T,) whether a bone is elsewhere than its channels (T, 4, 4) put it under its parent."""
-    bone = armature_data(armature).bones[name]
-    own, channels = poses.matrices[:, poses.bones.index(name)], bases.copy()
+def _off(armature: bpy.types.Object, names: Sequence[str], frames: FloatArray) -> BoolArray:
+    """(T, N) whether bones are elsewhere than their channels put them under their parents."""
+    bones = [armature_data(armature).bones[name] for name in names]
+    above = [bone.parent.name if bone.parent else bone.name for bone in bones]
+    posing, found = Posing(armature, names, above), []
+    with posing.kept():
+        for frame in frames:
+            posing.go_to(float(frame))
+            found.append((posing.bases(), *posing.shown()))
+    every = [np.array(each) for each in zip(*found, strict=True)]  # (T, N, 4, 4)
+    return np.stack(
+        [_is_off(bone, *(each[:, n] for each in every)) for n, bone in enumerate(bones)], axis=1
+    )
+
+
+def _is_off(
+    bone: bpy.types.Bone, channels: FloatArray, own: FloatArray, above: FloatArray
+) -> BoolArray:
+    """(T,) whether a bone's poses (T, 4, 4) are others than its channels and its parent's poses,
+    which do not count where it has none, put it in."""
     if bone.use_connect:  # its location does not count
+        channels = channels.copy()
         channels[:, :3, 3] = 0.0
-    carrier = bone.parent
-    above = None if carrier is None else poses.matrices[:, poses.bones.index(carrier.name)]
-    put = place(bone, above, channels)
+    put = place(bone, above if bone.parent else None, channels)
     turns = np.swapaxes(proper(put[:, :3, :3]), 1, 2) @ proper(own[:, :3, :3])
     turned = np.linalg.norm(turns - np.eye(3), axis=(1, 2)) > np.sqrt(2.0) * TURNED
     shifted = np.linalg.norm(put[:, :3, 3] - own[:, :3, 3], axis=1) > SHIFTED * bone.length

@@ -158,9 +158,7 @@ class Posing:
     def look(self) -> Posed:
         """Evaluate what was posed."""
         present(bpy.context.view_layer).update()
-        posed = self.armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
-        pose_of(posed).bones.foreach_get("matrix", self._flat)
-        every = self._flat.reshape(-1, 4, 4).transpose(0, 2, 1).astype(float)
+        every = self._evaluated()
         matrices, count = every[self._columns], len(self.controls)
         frames = matrices[:count] @ _inverse(self._bases)
         for index, (parent, offset) in self._parents.items():
@@ -169,6 +167,17 @@ class Posing:
         for index, (column, from_head) in self._nonlocal.items():
             places[index] = from_head if column is None else every[column] @ from_head
         return Posed(matrices[:count], frames, places, matrices[count:])
+
+    def shown(self) -> tuple[FloatArray, FloatArray]:
+        """Poses of the controls (C, 4, 4) and of the bodies (B, 4, 4) at a frame gone to."""
+        matrices = self._evaluated()[self._columns]
+        return matrices[: len(self.controls)], matrices[len(self.controls) :]
+
+    def _evaluated(self) -> FloatArray:
+        """(n, 4, 4) poses of all bones."""
+        posed = self.armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        pose_of(posed).bones.foreach_get("matrix", self._flat)
+        return self._flat.reshape(-1, 4, 4).transpose(0, 2, 1).astype(float)
 
     def object_to_world(self) -> FloatArray:
         """(4, 4) of the armature now."""

@@ -14,9 +14,8 @@ from ...bridge.armature.read import last_keyed
 from ...bridge.constraints.bone_mapping import chosen_parts
 from ...bridge.constraints.leaps import leaps_of, timed_phases
 from ...bridge.constraints.motion_problem import problem_of
-from ...bridge.controls.aimed import aimed_bones
+from ...bridge.controls.aimed import led_bones
 from ...bridge.controls.driven import beside_keys, turned_by_drivers
-from ...bridge.controls.held import held_bones
 from ...bridge.controls.refusals import require_posable
 from ...bridge.loops.write_loop import (
     root_bone,
@@ -302,25 +301,23 @@ def require_writable(
     settings = settings_of(armature)
     frames = recording.window(*span).frames
     segments = map_anatomy(recording.bones, chosen_parts(settings))
-    with showing_recorded(armature)():
-        aimed = aimed_bones(armature, recording.bones, segments, frames)
+    showing = showing_recorded(armature)
+    led = yield from led_bones(armature, recording.bones, segments, frames, showing)
     named = (recording.bones[segment.bone].name for segment in segments)
-    bodies = tuple(name for name in named if name not in aimed)
+    bodies = tuple(name for name in named if name not in led.aimed)
     trying = armature.session_uid, analysis_key(settings, recording), bodies
     driven = session().tried == trying
     if not driven:
-        driven = yield from require_posable(armature, bodies, frames, showing_recorded(armature))
+        driven = yield from require_posable(armature, bodies, frames, showing)
         session().tried = trying if driven else None
     if driven:
-        return aimed
+        return led.aimed
     turned = turned_by_drivers(armature, bodies)
     if turned:
         raise DrivenBones(tuple(turned))
-    with showing_recorded(armature)():
-        held = held_bones(armature, bodies, frames)
-    if held is not None:
-        raise HeldBones(*held)
-    return aimed
+    if led.held:
+        raise HeldBones(tuple(led.held), min(led.held.values()))
+    return led.aimed
 
 
 def _require_loopable(armature: bpy.types.Object) -> None:

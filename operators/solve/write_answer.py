@@ -201,7 +201,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         _tell_polish(armature, action, renewal, moved)
         rig = written.rig if written is not None else None
         yield from write_keys(armature, armature, action, answer, asked.keys, rig)
-        _tell_unmet(armature, action, answer.track)
+        yield from _tell_unmet(armature, action, answer.track)
         for _ in finishing:  # not "yield from", which would close it with what it is part of
             yield None
     except (Fault, ReferenceError):  # by which the result goes
@@ -269,13 +269,15 @@ def _tell_aimed(asked: Asked, armature: bpy.types.Object, track: PoseTrack) -> N
         _warn(armature, action, [line] * far, [*[line] * (not far), *apart])
 
 
-def _tell_unmet(armature: bpy.types.Object, action: bpy.types.Action, track: PoseTrack) -> None:
+def _tell_unmet(
+    armature: bpy.types.Object, action: bpy.types.Action, track: PoseTrack
+) -> Incremental[None]:
     """Which bones constraints keep from the result, such as a limit that the take did not reach."""
     if is_driven(armature, track.bones):  # what controls miss is told as they are written
         return
-    held = held_bones(armature, track.bones, track.frames)
-    if held is not None:
-        _warn(armature, action, [HELD.format(", ".join(held[0]), held[1])])
+    held = yield from held_bones(armature, track.bones, track.frames)
+    if held:
+        _warn(armature, action, [HELD.format(", ".join(held), min(held.values()))])
 
 
 def _tell_missed(

@@ -8,7 +8,8 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature.actions import read_recorded
-from hangtime.bridge.controls.aimed import AIMABLE, aimed_bones, aimed_in
+from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.controls.aimed import AIMABLE, LedBones, aimed_in, led_bones
 from hangtime.bridge.controls.driven import acting_on
 from hangtime.solver.body.anatomy import map_anatomy
 from hangtime.solver.body.character import build_character
@@ -124,7 +125,8 @@ def test_what_hangs_on_an_aimed_neck_goes_with_it(jump: bpy.types.Object) -> Non
     above = [recording.bones[s.bone].name for s in segments if s.part in AIMABLE]
     assert above[0] == "Neck"
     assert above[-1] == "Head"
-    assert aimed_bones(jump, recording.bones, segments, recording.frames) == tuple(above)
+    led = complete(led_bones(jump, recording.bones, segments, recording.frames))
+    assert led == LedBones(tuple(above))
 
 
 def test_how_far_the_centre_of_mass_is_off_is_told(jump: bpy.types.Object) -> None:
