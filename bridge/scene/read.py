@@ -17,7 +17,7 @@ import numpy as np
 from ...solver.arrays import FloatArray
 from ...solver.data.scene import SceneObject
 from ..accessors import current_scene
-from ..armature.incremental import Incremental, in_slices
+from ..armature.incremental import Incremental, in_slices, one_by_one
 from ..armature.poses import metres_per_unit
 from ..movable import may_deform, may_move
 from .bone_parts import BonePart, read_bone_parts
@@ -39,6 +39,16 @@ class SceneReading:
     reshaped: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True)
+class _Piece:
+    """An object, or the part of it that a bone carries, with its matrices (T, 4, 4), or one."""
+
+    member: Member
+    shape: Triangles
+    matrices: FloatArray
+    bone: str = ""
+
+
 def read_scene(
     of: Sequence[Member], frames: FloatArray, showing: Showing = nullcontext
 ) -> Incremental[SceneReading]:
@@ -54,19 +64,17 @@ def read_scene(
     shapes = first[0][0]
     matrices = yield from _matrices(objects, frames, showing)
     changed = yield from _reshaped(objects, shapes, frames, showing)
-    records: list[SceneObject] = []
+    pieces: list[_Piece] = []
     for member, shape, way in zip(of, shapes, matrices, strict=True):
         parts = yield from _parts(member, changed, frames, showing)
-        found = (
-            [_record(member, shape, way, frames)]
-            if not parts
-            else [_record(member, part.shape, part.matrices, frames, part.bone) for part in parts]
-        )
         changed -= {member.object} if parts else set()
-        records += [record for record, _ in found]
-        if any(stretches for _, stretches in found):
-            changed.add(member.object)
-    return SceneReading(tuple(records), tuple(m.name for m in of if m.object in changed))
+        whole = () if parts else (_Piece(member, shape, way),)
+        pieces += [*whole, *(_Piece(member, p.shape, p.matrices, p.bone) for p in parts)]
+    found = yield from one_by_one(pieces, partial(_record, frames))
+    stretched = [piece for piece, (_, stretches) in zip(pieces, found, strict=True) if stretches]
+    changed.update(piece.member.object for piece in stretched)
+    records = tuple(record for record, _ in found)
+    return SceneReading(records, tuple(m.name for m in of if m.object in changed))
 
 
 def _parts(
@@ -101,13 +109,11 @@ def _same(one: SceneObject, other: SceneObject) -> bool:
     return all(a.shape == b.shape and np.allclose(a, b, rtol=0.0, atol=_NEAR) for a, b in pairs)
 
 
-def _record(
-    member: Member, shape: Triangles, matrices: FloatArray, frames: FloatArray, bone: str = ""
-) -> tuple[SceneObject, bool]:
-    """A record of an object, or of the part of it that a bone carries, and whether its scale
-    changes."""
+def _record(frames: FloatArray, piece: _Piece) -> tuple[SceneObject, bool]:
+    """A record of a piece at frames (T,), and whether its scale changes."""
+    member, shape, bone = piece.member, piece.shape, piece.bone
     metres = metres_per_unit(current_scene())
-    movement = rigid_movement(matrices, metres)
+    movement = rigid_movement(piece.matrices, metres)
     inside_out = np.linalg.det(movement.baked) < 0.0
     record = SceneObject(
         f"{member.name}, {bone}" if bone else member.name,
