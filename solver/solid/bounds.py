@@ -49,31 +49,28 @@ class ObjectBounds:
 
 @dataclass(frozen=True)
 class ManyBounds:
-    """Those of K surfaces; None of one that has none, which may be near at all times."""
+    """Those of K objects."""
 
-    each: Sequence[ObjectBounds | None]
+    each: Sequence[ObjectBounds]
 
     def met(self, times: FloatArray, joints: FloatArray) -> BoolArray:
         """(K, N) which of them are near at instants (N,) s, at which joints are within boxes (2, N,
         3) m, world. What stands still is compared at once."""
-        near = np.ones((len(self.each), len(times)), dtype=bool)
-        near[list(self._still)] = _meet(self._boxes, joints[:, None])
-        for k, bounds in self._moving.items():
-            near[k] = _meet(bounds.at(times), joints)
+        near = np.empty((len(self.each), len(times)), dtype=bool)
+        near[~self._moves] = _meet(self._boxes, joints[:, None])
+        for k in np.flatnonzero(self._moves).tolist():
+            near[k] = _meet(self.each[k].at(times), joints)
         return near
 
     @cached_property
-    def _still(self) -> dict[int, ObjectBounds]:
-        return {k: b for k, b in enumerate(self.each) if b is not None and not b.motion.thing.moves}
-
-    @cached_property
-    def _moving(self) -> dict[int, ObjectBounds]:
-        return {k: b for k, b in enumerate(self.each) if b is not None and b.motion.thing.moves}
+    def _moves(self) -> BoolArray:
+        return np.array([bounds.motion.thing.moves for bounds in self.each], dtype=bool)
 
     @cached_property
     def _boxes(self) -> FloatArray:
         """(2, S, 1, 3) m, of what stands still."""
-        boxes = np.array([bounds.at(np.zeros(1)) for bounds in self._still.values()])
+        still = np.flatnonzero(~self._moves).tolist()
+        boxes = np.array([self.each[k].at(np.zeros(1)) for k in still])
         return np.moveaxis(boxes.reshape(-1, 2, 1, 3), 1, 0)
 
 

@@ -242,17 +242,28 @@ class Surfaces:
         return np.cumsum([0, *counts[:-1]])
 
     @cached_property
-    def _bounds(self) -> ManyBounds:
-        return ManyBounds([part.bounds for part in self.parts])
+    def _bounds(self) -> dict[int, ObjectBounds]:
+        """Of the parts that have any, by index."""
+        return {k: p.bounds for k, p in enumerate(self.parts) if p.bounds is not None}
+
+    @cached_property
+    def _many(self) -> ManyBounds:
+        return ManyBounds(tuple(self._bounds.values()))
 
     def near(self, placed: Placed) -> tuple[IntArray, IntArray]:
         """Of every part, which is asked about the instants at which it is not far."""
         instants, items = [_NONE], [_NONE]
-        met = self._bounds.met(placed.times, placed.joints)
-        for k in np.flatnonzero(met.any(axis=1)).tolist():
-            part, at = self.parts[k], np.flatnonzero(met[k])
-            when, which = part.near(placed if part.bounds is None else placed.at(at))
-            instants.append(at[when])
+        met = self._many.met(placed.times, placed.joints)
+        at = {k: np.flatnonzero(row) for k, row in zip(self._bounds, met, strict=True)}
+        for k, part in enumerate(self.parts):
+            if k not in at:
+                when, which = part.near(placed)
+            elif len(at[k]):
+                when, which = part.near(placed.at(at[k]))
+                when = at[k][when]
+            else:
+                continue
+            instants.append(when)
             items.append(which + self._first[k])
         return np.concatenate(instants), np.concatenate(items)
 
