@@ -60,6 +60,9 @@ def turned(shown: Recording, character: Character, body: int) -> FloatArray:
 
 def excess(limit: JointRange, now: FloatArray, recorded: FloatArray) -> FloatArray:
     """(T,) rad beyond the range and the recording's. now, recorded: (T, 3, 3), (R, 3, 3)."""
+    if isinstance(limit.measure, ConeAngle):
+        after, allowed = (outside(limit.measure, limit.upper, R) for R in (now, recorded))
+        return np.asarray(np.maximum(after - max(allowed.max(), 0.0), 0.0))
     found, before = (angles(limit.measure, R) for R in (now, recorded))
     if isinstance(limit.measure, TwistAngle):  # may have gone round; the nearest turn counts
         middle = 0.5 * (limit.lower + limit.upper)
@@ -68,14 +71,19 @@ def excess(limit: JointRange, now: FloatArray, recorded: FloatArray) -> FloatArr
     return np.asarray(np.maximum(np.maximum(lower - found, found - upper), 0.0))
 
 
+def outside(cone: ConeAngle, half: float, R: FloatArray) -> FloatArray:
+    """(T,) rad from the cone's edge outwards, in the plane of the axis and the bone."""
+    axis, *across = cone.frame
+    along = R @ cone.along
+    sides = [along @ side for side in across]
+    whole, squeezed = np.hypot(*sides), np.hypot(*(sides / cone.stretch[:, None]))
+    from_axis = np.arccos(np.clip(along @ axis, -1.0, 1.0))
+    return np.asarray(from_axis - np.arctan2(whole * np.sin(half), squeezed * np.cos(half)))
+
+
 def angles(measure: JointMeasure, R: FloatArray) -> FloatArray:
-    """(T,) rad of rotations (T, 3, 3), child to parent."""
+    """(T,) rad of rotations (T, 3, 3), child to parent, about what is no cone's axis."""
     match measure:
-        case ConeAngle():
-            axis, *across = measure.frame
-            along = R @ measure.along
-            sides = [along @ side / s for side, s in zip(across, measure.stretch, strict=True)]
-            return np.asarray(np.arctan2(np.hypot(*sides), along @ axis))
         case BendAngle():
             along = R @ measure.along
             ahead = along @ measure.straight + 1j * (along @ measure.flexion)

@@ -8,6 +8,9 @@ share theirs evenly among their bones. A foot's zero is its rest pose, a hand's 
 Hinges become ranges of the bend; ball joints become cones. A hip's and a spine's cone goes through
 the four ends of its table and is wider forwards than sideways; a shoulder's is the narrowest round
 one about forward and outward that holds its table; wrist and neck take their largest angle.
+
+A cone's edge is where an ellipse across its axis is seen from its apex, as wide as its half angle
+tells times the stretch of each of two directions across, at right angles.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -31,6 +34,7 @@ WRIST_FLEXION = 80.0  # flexion; extension 70, to the sides 20 and 30
 SPINE_FLEXION = (-25.0, 80.0)  # extension, flexion of chest and loins together
 SPINE_LATERAL_FLEXION = 35.0
 NECK_FLEXION = 45.0  # flexion, extension and to either side
+ON_AXIS = 1e-9  # sine of the angle from a cone's axis of what has no direction across
 MIN_BEND_SINE = 0.05  # a joint that bends less does not tell in which direction it bends
 SIDES = (Side.LEFT, Side.RIGHT)
 
@@ -113,7 +117,7 @@ def limit_violation(limit: JointRange, directions: FloatArray, figure: RestFigur
     directions: (T, 3) unit, the bone's against its parent, in the axes of the rest pose.
     """
     if isinstance(limit, ConeRange):
-        return max(float(_lean(limit, directions, figure).max()) - limit.half_angle, 0.0)
+        return max(float(_outside(limit, directions, figure).max()), 0.0)
     straight = figure.along[figure.parents[limit.bone]]
     mean = directions.mean(axis=0)
     across = mean - straight * (mean @ straight)
@@ -123,13 +127,12 @@ def limit_violation(limit: JointRange, directions: FloatArray, figure: RestFigur
     return max(limit.lower - float(bend.min()), float(bend.max()) - limit.upper, 0.0)
 
 
-def _lean(limit: ConeRange, directions: FloatArray, figure: RestFigure) -> FloatArray:
-    """(T,) rad from the cone's axis, as constraint_functions.Cone has it."""
+def _outside(limit: ConeRange, directions: FloatArray, figure: RestFigure) -> FloatArray:
+    """(T,) rad outside the cone, whose cross directions are those of joint_measures.cone_angle."""
     side = figure.left - limit.axis * (figure.left @ limit.axis)
     side = unit(side) if np.linalg.norm(side) > 0.3 else perpendicular(limit.axis)
-    crosses = np.stack([side, np.cross(limit.axis, side)]) / np.array(limit.stretch)[:, None]
-    across = np.linalg.norm(directions @ crosses.T, axis=1)
-    return np.asarray(np.arctan2(across, directions @ limit.axis))
+    frame = np.stack([limit.axis, side, np.cross(limit.axis, side)])
+    return beyond_edge(directions @ frame.T, limit.half_angle, np.array(limit.stretch))
 
 
 # ---------------------------------------------------------------- of each joint
@@ -225,3 +228,42 @@ def _half(ends: tuple[float, float]) -> float:
 
 def _angle(a: FloatArray, b: FloatArray) -> float:
     return acos(float(np.clip(a @ b, -1.0, 1.0)))
+
+
+# ---------------------------------------------------------------- of a cone's edge
+
+
+def off_axis(parts: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Angles (U,) rad from an axis, and ways (U, 2) unit that lead there.
+
+    parts: (U, 3) of unit vectors, along the axis and in the two directions across.
+    """
+    sine = np.linalg.norm(parts[:, 1:], axis=1)
+    ways = parts[:, 1:] / np.maximum(sine, ON_AXIS)[:, None]
+    ways[sine < ON_AXIS] = 1.0, 0.0  # every way leads off the axis; one must do
+    return np.asarray(np.arctan2(sine, parts[:, 0].copy())), ways
+
+
+def narrowing(ways: FloatArray, stretch: FloatArray) -> FloatArray:
+    """(U,) by what the tangent of a cone's half angle is divided, the ways (U, 2) unit across.
+
+    stretch: (2,) of the two directions across.
+    """
+    return np.asarray(np.linalg.norm(ways / stretch, axis=1))
+
+
+def edge(narrow: FloatArray, half_angle: float) -> FloatArray:
+    """(U,) rad from the axis to the edge. narrow: (U,) as `narrowing` tells; half_angle: rad, of
+    half a turn and more there is no edge."""
+    if half_angle >= np.pi:
+        return np.full(len(narrow), np.inf)
+    return np.asarray(np.arctan2(np.sin(half_angle), narrow * np.cos(half_angle)))
+
+
+def beyond_edge(parts: FloatArray, half_angle: float, stretch: FloatArray) -> FloatArray:
+    """(U,) rad by which directions are outside a cone, straight off its axis; below 0 within.
+
+    parts: (U, 3) of unit vectors, along the axis and in the two directions across. stretch: (2,).
+    """
+    angle, ways = off_axis(parts)
+    return angle - edge(narrowing(ways, stretch), half_angle)

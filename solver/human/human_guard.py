@@ -107,11 +107,11 @@ class HumanGuard:
         return tuple(each.name for each in self.human)
 
     @cached_property
-    def _measured(self) -> list[FloatArray]:
-        """(T + 1,) rad of each range: of the reference on the dense grid, and of its rest pose."""
+    def _turned(self) -> FloatArray:
+        """(T + 1, B, 3, 3) joint rotations of the reference on the dense grid, and of its rest
+        pose."""
         turned = self.reference.joint_rotations(_grid(self.reference.duration, SPACING))
-        turned = np.concatenate([turned, np.broadcast_to(np.eye(3), (1, *turned.shape[1:]))])
-        return [each.measure.of(turned[:, each.body]) for each in self.human]
+        return np.concatenate([turned, np.broadcast_to(np.eye(3), (1, *turned.shape[1:]))])
 
     @cached_property
     def ranges(self) -> tuple[JointRange, ...]:
@@ -120,16 +120,15 @@ class HumanGuard:
         return tuple(
             replace(each, lower=-inf, upper=inf)
             if bodies[each.body].bone in self.own
-            else each.reaching(found)
-            for each, found in zip(self.human, self._measured, strict=True)
+            else each.holding(self._turned[:, each.body])
+            for each in self.human
         )
 
     @cached_property
     def recorded(self) -> list[DenseViolation]:
         """How far the recording itself (its fit) goes beyond human ranges; it may."""
-        found = [each[:-1] for each in self._measured]
         times = _grid(self.reference.duration, SPACING)
-        return _beyond(self.human, times, found).worst(self.names)
+        return _beyond(self.human, times, self._turned[:-1]).worst(self.names)
 
     def sparse(self) -> "HumanGuard":
         """The same, for which half as many instants are looked at."""
@@ -145,9 +144,7 @@ class HumanGuard:
 
     def _look(self, motion: Motion) -> BeyondRange:
         times = _grid(motion.duration, self.spacing)
-        turned = motion.joint_rotations(times)
-        found = [each.measure.of(turned[:, each.body]) for each in self.ranges]
-        return _beyond(self.ranges, times, found)
+        return _beyond(self.ranges, times, motion.joint_rotations(times))
 
     def rows(self, motion: Motion, given_up: Set[str]) -> GuardRows | None:
         """A motion's range rows, with more where it goes beyond; the same where it does not.
@@ -177,12 +174,9 @@ def recorded_ranges(reference: Motion) -> tuple[JointRange, ...]:
     return joint_ranges(reference.transcription.character, reference.angles(times))
 
 
-def _beyond(
-    ranges: tuple[JointRange, ...], times: FloatArray, found: list[FloatArray]
-) -> BeyondRange:
-    """Where measures (T,) at instants (T,) s are beyond their ranges, by MOST_NEW."""
-    high = np.stack([f - each.upper for f, each in zip(found, ranges, strict=True)], axis=1)
-    low = np.stack([each.lower - f for f, each in zip(found, ranges, strict=True)], axis=1)
+def _beyond(ranges: tuple[JointRange, ...], times: FloatArray, turned: FloatArray) -> BeyondRange:
+    """Where joint rotations (T, B, 3, 3) at instants (T,) s are beyond ranges, by MOST_NEW."""
+    low, high = np.stack([each.past(turned[:, each.body]) for each in ranges], axis=2)
     over = np.maximum(high, low)
     instants, items = np.nonzero(over > MOST_NEW)
     upper = high[instants, items] >= low[instants, items]

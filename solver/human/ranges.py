@@ -46,6 +46,7 @@ from ..transcription.joint_measures import (
     bend_angle,
     cone_angle,
 )
+from .wider_cone import wider_cone
 
 LOADED_DORSIFLEXION = 40.0
 HIP_ROTATION = (-45.0, 45.0)  # inwards, outwards
@@ -74,21 +75,26 @@ class JointRange:
 
     def widened(self, by: float) -> "JointRange":
         """The same, but `by` rad wider at both ends."""
-        return replace(self, lower=self.lower - by, upper=self.upper + by)
+        return self._wider(by, by)
 
     def holding(self, R: FloatArray) -> "JointRange":
         """The same, or as much wider as rotations (T, 3, 3), child to parent, ask for."""
-        return self.reaching(self.measure.of(R))
-
-    def reaching(self, found: FloatArray) -> "JointRange":
-        """The same, or as much wider as measures (T,), rad, ask for."""
-        lower, upper = min(self.lower, float(found.min())), max(self.upper, float(found.max()))
-        return replace(self, lower=lower, upper=upper)
+        return self._wider(*np.maximum(self.past(R).max(axis=1), 0.0).tolist())
 
     def beyond(self, R: FloatArray) -> FloatArray:
         """(T,) rad beyond the range of rotations (T, 3, 3), child to parent; below 0 within."""
-        found = self.measure.of(R)
-        return np.asarray(np.maximum(found - self.upper, self.lower - found))
+        return np.asarray(self.past(R).max(axis=0))
+
+    def past(self, R: FloatArray) -> FloatArray:
+        """(2, T) rad past the lower and the upper end; below 0 within. R as for `beyond`."""
+        return self.measure.past(R, self.lower, self.upper)
+
+    def _wider(self, below: float, above: float) -> "JointRange":
+        """Wider by so much, rad, at each end; an elliptic cone all around, by the same angle."""
+        cone = self.measure
+        if isinstance(cone, ConeAngle) and np.any(cone.stretch != 1.0):
+            return replace(self, measure=wider_cone(cone, self.upper, above))
+        return replace(self, lower=self.lower - below, upper=self.upper + above)
 
 
 def joint_ranges(character: Character, angles: FloatArray) -> tuple[JointRange, ...]:

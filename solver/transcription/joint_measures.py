@@ -13,12 +13,10 @@ import numpy as np
 from ..arrays import FloatArray
 from ..body.anatomy import Part
 from ..body.character import Body, Character, Joint
-from ..body.human_limits import MIN_BEND_SINE
+from ..body.human_limits import MIN_BEND_SINE, ON_AXIS, beyond_edge
 from ..data.row_kinds import RowKind
 from ..numerics.rotations import perpendicular, quaternion, unit
 from .sampling import Channel, ChannelJacobian, State
-
-ON_AXIS = 1e-9  # sine of the angle from an axis that has no direction across
 
 
 def joint_frame(joint: Joint, angles: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -47,6 +45,11 @@ class JointMeasure(ABC):
     @abstractmethod
     def gradient(self, R: FloatArray) -> FloatArray:
         """(U, 3) by a small turn of the child, in the parent's frame."""
+
+    def past(self, R: FloatArray, lower: float, upper: float) -> FloatArray:
+        """(2, U) rad that rotations (U, 3, 3) are past a lower and an upper end; below 0 within."""
+        found = self.of(R)
+        return np.stack([lower - found, found - upper])
 
     def value(self, state: State) -> FloatArray:
         turned = self.joint.axes.rotation(state.angles()[:, self.joint.dofs])
@@ -113,7 +116,9 @@ class ConeAngle(JointMeasure):
     """Angle between a bone and a cone's axis, rad, its cross directions divided by `stretch`.
 
     along (3,): the bone's direction, child's frame. frame (3, 3): rows the axis and the two cross
-    directions, parent's frame. The thesis's a . S R l, as an angle so that its size says how far.
+    directions, parent's frame. The thesis's a . S R l, as an angle. Where a stretch is not 1 it is
+    the angle of a squeezed direction, and tells whether a bone is outside a cone but not how far:
+    that `past` tells.
     """
 
     along: FloatArray
@@ -134,6 +139,15 @@ class ConeAngle(JointMeasure):
         outward = unit_parts @ shape[1:]
         towards = parts[:, :1] * outward - across[:, None] * shape[0]
         return np.asarray(np.cross(direction, towards) / (across**2 + parts[:, 0] ** 2)[:, None])
+
+    def past(self, R: FloatArray, lower: float, upper: float) -> FloatArray:
+        """An angle in space at the upper end, straight off the axis; a cone has no lower one."""
+        below = lower - self.of(R)
+        return np.stack([below, beyond_edge(self._parts(R), upper, self.stretch)])
+
+    def _parts(self, R: FloatArray) -> FloatArray:
+        """(U, 3) the bone's direction along the axis and in the cross directions."""
+        return np.asarray(R @ self.along @ self.frame.T)
 
     @property
     def _shape(self) -> FloatArray:

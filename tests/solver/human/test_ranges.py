@@ -7,8 +7,8 @@ import pytest
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.character import Character
 from hangtime.solver.human.ranges import JointRange, joint_ranges, rest_figure
-from hangtime.solver.numerics.rotations import rotation_matrix
-from hangtime.solver.transcription.joint_measures import BendAngle
+from hangtime.solver.numerics.rotations import rotation_matrix, shortest_rotation, unit
+from hangtime.solver.transcription.joint_measures import BendAngle, ConeAngle
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -98,3 +98,36 @@ def test_a_range_holds_what_a_recording_does() -> None:
     wider = neck.holding(folded)
     assert wider.beyond(folded)[0] == pytest.approx(0.0, abs=1e-9)
     assert neck.holding(turned(left(), 5.0)).upper == neck.upper
+
+
+def flexed(degrees: float) -> FloatArray:
+    """The left hip with the thigh hanging straight down, then turned forwards; child to parent."""
+    thigh = character().bodies[ranges()["Left hip bends"].body]
+    return turned(left(), -degrees) @ shortest_rotation(unit(thigh.tip), -UP)
+
+
+@pytest.mark.parametrize("degrees", [121.0, 130.0, 150.0, 165.0])
+def test_a_folded_hip_is_beyond_its_range_by_degrees_of_flexion(degrees: float) -> None:
+    beyond = np.degrees(ranges()["Left hip bends"].beyond(flexed(degrees)))
+    assert beyond == pytest.approx(degrees - 120.0, abs=1.0)
+
+
+@pytest.mark.parametrize("wider", [10.0, 40.0])
+def test_a_wider_cone_is_so_much_wider_all_around(wider: float) -> None:
+    cones = [each for each in ranges().values() if isinstance(each.measure, ConeAngle)]
+    turns = rotation_matrix(np.random.default_rng(1).normal(0.0, 1.0, (200, 3)))
+    for each in cones:
+        other = each.widened(np.radians(wider))
+        assert other.beyond(turns) == pytest.approx(each.beyond(turns) - np.radians(wider))
+        outside = other.measure.of(turns) > other.upper  # as the solver sees it
+        assert (outside == (other.beyond(turns) > 0.0)).all(), each.name
+
+
+def test_a_pike_that_was_recorded_allows_no_wider_straddle() -> None:
+    hip = ranges()["Left hip bends"]
+    straddle = turned(forward(), -80.0) @ flexed(0.0)
+    allowed = hip.holding(flexed(150.0))
+    assert allowed.beyond(flexed(150.0)) == pytest.approx(0.0, abs=1e-9)
+    assert hip.beyond(straddle) - allowed.beyond(straddle) == pytest.approx(
+        np.radians(30.0), abs=np.radians(1.0)
+    )

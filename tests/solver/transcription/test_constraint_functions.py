@@ -9,6 +9,7 @@ from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.character import Character
 from hangtime.solver.body.kinematics import BodyPoint
 from hangtime.solver.constraints.joint_constraints import bend_function
+from hangtime.solver.human.wider_cone import WiderCone
 from hangtime.solver.numerics.rotations import axis_rotation, rotation_matrix, rotation_vector, unit
 from hangtime.solver.transcription.constraint import ConstraintFunction
 from hangtime.solver.transcription.constraint_functions import (
@@ -123,6 +124,17 @@ def test_a_cone_s_stretch_widens_it(axis: int, tangent: float) -> None:
     assert np.tan(cone.value(state)[0, 0]) == pytest.approx(tangent)
 
 
+@pytest.mark.parametrize(("axis", "stretch"), [(0, 2.0), (1, 0.5)])
+def test_how_far_a_bone_is_past_a_stretched_cone_is_an_angle_in_space(
+    axis: int, stretch: float
+) -> None:
+    half, bent = np.radians(30.0), np.radians(75.0)
+    cone = ConeAngle(arm(3).joints[1], DOWN, ACROSS, np.array([0.5, 2.0]))
+    edge = np.arctan(stretch * np.tan(half))
+    past = cone.past(axis_rotation(axis, bent)[None], -np.inf, half)[1]
+    assert past == pytest.approx(bent - edge)
+
+
 @given(ANGLE, SWING, SWING)
 def test_twist_does_not_see_swings(twist: float, x: float, y: float) -> None:
     along = unit(np.array([0.2, -0.3, -1.0]))
@@ -192,6 +204,7 @@ def functions(t: Transcription, body: int) -> dict[str, ConstraintFunction]:
         "bend": BendAngle(joint, along, straight, flexion),
         "cone": ConeAngle(joint, along, frame, np.ones(2)),
         "stretched cone": ConeAngle(joint, along, frame, np.array([0.6, 1.7])),
+        "wider cone": WiderCone(joint, along, frame, np.array([0.6, 1.7]), half=0.7, by=0.3),
         "aside": SideAngle(joint, along, flexion),
         "twist": TwistAngle(joint, along),
         "twist from a pose": TwistAngle(joint, along, zero=rotation_matrix(wanted)),
