@@ -13,8 +13,8 @@ turn = 90                       # degrees, counter-clockwise from above
 axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]   # or its turn as a matrix, in rows
 path = [{ frame = 1, place = [0, 0, 0], turn = 0 }, { frame = 50, place = [2, 0, 0] }]  # it moves
 under = "Landing"               # instead of place: its top (in its middle) is where that pin's
-                                # contacts land, x ahead; or under = "flight 1": on the floor
-                                # below the highest point of that flight
+                                # contacts land, of hands where the palms rest, x ahead; or
+                                # under = "flight 1": on the floor below the highest point of it
 forward = 0.2                   # m from there along the travel; left, up, back, right, down
 
 How it moves beside its path is in object_rates.py.
@@ -28,6 +28,7 @@ from typing import Any
 import numpy as np
 
 from ...solver.analysis.analyse import Analysis
+from ...solver.analysis.performance import above_ground
 from ...solver.analysis.pinned_places import chosen_contacts, phase_of, pinned_places, travel_axes
 from ...solver.arrays import FloatArray, IntArray
 from ...solver.data.contacts import Phase, PhaseKind
@@ -202,7 +203,10 @@ def _placed(under: Under, problem: MotionProblem, analysis: Analysis) -> SceneOb
         bare = replace(problem, pins=tuple(replace(each, on=None) for each in problem.pins))
         phase = phase_of(pin, schedule)
         chosen = chosen_contacts(pin, phase, schedule)
-        place = pinned_places(bare, performance, schedule)[chosen].mean(axis=0)
+        contacts = [schedule.contacts[i] for i in chosen]
+        places = pinned_places(bare, performance, schedule)[chosen]
+        places[:, 2] -= above_ground(contacts, performance.character, schedule.floor_m)
+        place = places.mean(axis=0)
         middle = placed_mesh(under.thing).heights(np.zeros((1, 2))).z[0]
         if not np.isfinite(middle):
             raise NoFaceThere(pin.name, under.what, under.thing.name)

@@ -14,6 +14,7 @@ from ..contacts.contact_detection import detect_contacts
 from ..contacts.flat_soles import lying
 from ..contacts.known_contacts import Clock, with_known
 from ..data.contacts import (
+    Contact,
     ContactPoint,
     ContactSchedule,
     Interval,
@@ -31,8 +32,10 @@ from .soles import FootTracks, floor_height, foot_points
 
 SNAP_FRAMES = 1.5
 MIN_SNAP_TOLERANCE = 0.012  # s; instants nearer than this share a knot
-KNEE_DEPTH = 0.04  # of the height; a knee's joint is 0.03 to 0.05 of it above what it rests on
-PALM_DEPTH = 0.03  # of the height; a hand's bone is so far above the floor that its palm is on
+DEPTHS = {  # of the height, from what a part rests on to its point
+    "hand": 0.03,  # which is in the hand's bone, not on the palm
+    "knee": 0.04,  # in the joint, which is 0.03 to 0.05 above
+}
 LEANING = 0.07  # of the height, above the floor; wrists and knees on it are at 0.03 to 0.05
 
 
@@ -148,10 +151,24 @@ def contact_points(performance: Performance) -> tuple[dict[str, ContactPoint], f
     for side in (Side.LEFT, Side.RIGHT):
         hand, shank = (performance.character.body(part, side) for part in (Part.HAND, Part.SHANK))
         if hand is not None:
-            points[f"{side.value.capitalize()} hand"] = _palm(performance, hand)
+            name = f"{side.value.capitalize()} hand"
+            points[name] = _palm(performance, name, hand)
         if shank is not None:
-            points[f"{side.value.capitalize()} knee"] = _knee(performance, shank)
+            name = f"{side.value.capitalize()} knee"
+            points[name] = _knee(performance, name, shank)
     return points, floor_m
+
+
+def point_depth(point: str, character: Character) -> float:
+    """M from what a part rests on to its point, such as "Left hand"; 0 of what is on a sole."""
+    return DEPTHS.get(point.rpartition(" ")[2], 0.0) * character.height
+
+
+def above_ground(contacts: Sequence[Contact], character: Character, floor_m: float) -> FloatArray:
+    """(k,) m by which the recorded points of contacts are above what they rest on: a palm's and a
+    knee's by its depth, or less where the floor, at floor_m, is nearer."""
+    depths = [point_depth(contact.point, character) for contact in contacts]
+    return np.clip([contact.place[2] - floor_m for contact in contacts], 0.0, depths)
 
 
 def leans(performance: Performance, floor_m: float) -> BoolArray:
@@ -179,20 +196,20 @@ def low_feet(points: Mapping[str, ContactPoint], floor_m: float) -> BoolArray:
     return np.asarray(np.any(low, axis=0))
 
 
-def _palm(performance: Performance, hand: int) -> ContactPoint:
+def _palm(performance: Performance, name: str, hand: int) -> ContactPoint:
     """Contact point in the middle of a hand."""
     body, recording = performance.character.bodies[hand], performance.recording
     place = 0.5 * body.tip
     track = performance.centres[:, hand] + performance.rotations[:, hand] @ place
     rest = recording.bones[recording.index(body.bone)].rotation
-    depth = PALM_DEPTH * performance.character.height
+    depth = point_depth(name, performance.character)
     return ContactPoint(PointKind.HAND, body.bone, rest.T @ place, track, depth=depth)
 
 
-def _knee(performance: Performance, shank: int) -> ContactPoint:
+def _knee(performance: Performance, name: str, shank: int) -> ContactPoint:
     """Contact point in the joint of a knee, about which the shank turns while it rests."""
     bone, track = performance.character.bodies[shank].bone, performance.centres[:, shank]
-    depth = KNEE_DEPTH * performance.character.height
+    depth = point_depth(name, performance.character)
     return ContactPoint(PointKind.KNEE, bone, np.zeros(3), track, depth=depth)
 
 

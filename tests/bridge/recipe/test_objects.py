@@ -8,6 +8,7 @@ import pytest
 from hangtime.bridge.recipe.objects import placed_objects
 from hangtime.bridge.recipe.problem import locate, parse_recipe, write_recipe
 from hangtime.solver.analysis.pinned_places import pinned_places
+from hangtime.solver.data.contacts import Contact
 from hangtime.solver.data.faults import BadRecipe, InsideOut, NotGround
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.scene import SceneObject, SceneRole
@@ -124,3 +125,34 @@ def test_a_box_under_a_pin_has_its_top_where_the_pin_lands() -> None:
     problem = replace(recipe.problem, scene=(crate, hurdle))
     stood = pinned_places(problem, hop().performance, hop().schedule)
     np.testing.assert_allclose(stood, places, atol=0.005)
+
+
+def test_a_box_under_hands_has_its_top_where_the_palms_rest() -> None:
+    """Points in palms that rest on the floor, at different heights above it, moved up by a box."""
+    text = """
+        [[object]]
+        box = [0.9, 0.5, 0.15]
+        under = "Hands"
+        [[pin]]
+        name = "Hands"
+        phase = "ground 2"
+        points = ["Left hand", "Right hand"]
+        up = 0.15
+    """
+    recipe, schedule = parse_recipe(text), hop().schedule
+    phase = schedule.stances[-1]
+    hands = tuple(
+        Contact(
+            f"{side} hand 1",
+            f"{side} hand",
+            f"{side}Hand",
+            np.zeros(3),
+            phase.start,
+            phase.end,
+            np.array([1.0, y, schedule.floor_m + above]),
+        )
+        for side, y, above in (("Left", 0.2, 0.02), ("Right", -0.2, 0.045))
+    )
+    analysis = replace(hop(), schedule=replace(schedule, contacts=schedule.contacts + hands))
+    (crate,) = placed_objects(recipe.under, recipe.problem, analysis)
+    np.testing.assert_allclose(crate.positions[0], [1.0, 0.0, schedule.floor_m], atol=1e-9)
