@@ -9,7 +9,7 @@ from tempfile import TemporaryFile
 from types import TracebackType
 from typing import BinaryIO
 
-from ...solver.data.faults import OutputFolderBusy, OutputNotWritable
+from ...solver.data.faults import NotWrittenOver, OutputFolderBusy, OutputNotWritable
 from .lock import LOCK, WITHOUT, is_held, remove, remove_empty, take
 from .record import FileRecord
 
@@ -161,3 +161,14 @@ def _own(path: Path) -> BinaryIO | None:
 def not_writable(path: Path, error: OSError) -> OutputNotWritable:
     """The fault of a path that could not be written."""
     return OutputNotWritable(str(path), error.strerror or type(error).__name__)
+
+
+def write_new(path: Path, text: str) -> None:
+    """A text file where there is none. Raises NotWrittenOver, OutputNotWritable."""
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError as error:
+        raise NotWrittenOver(str(path)) from error
+    except OSError as error:
+        raise not_writable(path, error) from error

@@ -17,7 +17,7 @@ from ...solver.data.faults import BadRecipe, Fault, NoSolution, OptionNotTaken
 from ...solver.data.problem import MotionProblem
 from ...solver.doctor.repairs import Repairs
 from ...solver.worker.pipeline import solve
-from ..files.outbox import Outbox, not_writable
+from ..files.outbox import Outbox, write_new
 from ..terminal.outlasting import outlasting
 from ..terminal.stages import WIDTH, Stages
 from ..words.analysis_text import analysis_text, starter_recipe
@@ -233,11 +233,7 @@ def analyze(options: argparse.Namespace) -> None:
     if target is not None:
         stated = clip.stated(target), asked.repairs
         text = starter_recipe(loaded.subject.analysis, loaded.problem, clip.path, target, *stated)
-        try:
-            with target.open("x", encoding="utf-8") as file:
-                file.write(text)
-        except OSError as error:
-            raise not_writable(target, error) from error
+        write_new(target, text)
         print(f"\nWritten:\n  {target}")
 
 

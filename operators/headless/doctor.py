@@ -15,7 +15,7 @@ from ...solver.doctor.examination.diagnose import Diagnosis, diagnose
 from ...solver.doctor.finding import Finding
 from ...solver.doctor.repairs import filled_frame
 from ...solver.doctor.stretch import Span
-from ..files.outbox import not_writable
+from ..files.outbox import write_new
 from ..words.analysis_text import relative
 from ..words.doctor_text import diagnosis_text, finding_sentence, rounded
 from ..words.doubt_text import file_doubts
@@ -66,7 +66,7 @@ def told(examination: Examination, *, as_json: bool) -> str:
 
 def write_recipe_of(examination: Examination, target: Path) -> None:
     """A new recipe with the repairs, and with what was stated for the diagnosis. Raises
-    OutputNotWritable."""
+    NotWrittenOver, OutputNotWritable."""
     diagnosis, problem = examination.diagnosis, examination.problem
     top = {
         "clip": relative(examination.clip.path, target),
@@ -80,12 +80,7 @@ def write_recipe_of(examination: Examination, target: Path) -> None:
         RECORDING.header: RECORDING.write(rounded(diagnosis.repairs)),
     }
     texts = [text for header, values in tables.items() for text in sections(header, values)]
-    text = "\n".join([entries(top), *texts])
-    try:
-        with target.open("x", encoding="utf-8") as file:
-            file.write(text)
-    except OSError as error:
-        raise not_writable(target, error) from error
+    write_new(target, "\n".join([entries(top), *texts]))
 
 
 def _kept(frames: Span, diagnosis: Diagnosis) -> Span:

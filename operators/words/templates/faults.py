@@ -138,6 +138,8 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     ),
     faults.OutputNotWritable: "Nothing can be written to {path} ({problem}); choose another place "
     "or allow writing there.",
+    faults.NotWrittenOver: "“{path}” exists already and is not written over; delete it, or choose "
+    "another name.",
     faults.OutputFolderBusy: "Another adaptation or batch is writing into {path}; wait until "
     "it ends, or choose another folder with --out.",
     faults.WouldReplaceInput: "The result would be written over {path}, from which it is made; "

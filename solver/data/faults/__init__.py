@@ -139,6 +139,7 @@ from .solving import Damage as Damage
 from .solving import NoFit as NoFit
 from .solving import NoSolution as NoSolution
 from .solving import NotComputable as NotComputable
+from .solving import NotWrittenOver as NotWrittenOver
 from .solving import OutputFolderBusy as OutputFolderBusy
 from .solving import OutputNotWritable as OutputNotWritable
 from .solving import PinLetGo as PinLetGo

@@ -37,6 +37,13 @@ class OutputNotWritable(Fault):
 
 
 @dataclass
+class NotWrittenOver(Fault):
+    """A file that a run would make is there already."""
+
+    path: str
+
+
+@dataclass
 class OutputFolderBusy(Fault):
     """Another process is writing its results into the output folder."""
 

@@ -12,8 +12,9 @@ from typing import IO, Any
 import pytest
 from hangtime.operators.files import lock as locking
 from hangtime.operators.files.lock import LOCK
-from hangtime.operators.files.outbox import OWN_LOCK, Outbox
-from hangtime.solver.data.faults import OutputFolderBusy, OutputNotWritable
+from hangtime.operators.files.outbox import OWN_LOCK, Outbox, write_new
+from hangtime.operators.words.messages import sentence
+from hangtime.solver.data.faults import NotWrittenOver, OutputFolderBusy, OutputNotWritable
 
 
 def kept_open(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
@@ -239,3 +240,14 @@ def test_what_ends_a_run_after_its_delivery_tells_what_is_written(tmp_path: Path
     with pytest.raises(MemoryError) as raised:
         end_after_delivery(tmp_path)
     assert not hasattr(raised.value, "__notes__")
+
+
+def test_a_new_file_is_never_written_over_an_old_one(tmp_path: Path) -> None:
+    recipe = tmp_path / "my.toml"
+    write_new(recipe, "mine")
+    with pytest.raises(NotWrittenOver) as caught:
+        write_new(recipe, "other")
+    assert recipe.read_text(encoding="utf-8") == "mine"
+    assert sentence(caught.value).startswith(f"“{recipe}” exists already")
+    with pytest.raises(OutputNotWritable):
+        write_new(tmp_path / "nowhere" / "my.toml", "mine")
