@@ -45,6 +45,11 @@ WHAT_CARRIES = (
     "where hands do, let them touch (Add Contact); where a chair or a wall does, give what rests "
     "on it a Point with Pushes Back; where feet stand on something, let it be ground (World)"
 )
+BESIDE_HANDS = (
+    "hands touch there already, but the weight is {} beside hands and feet on average, where these "
+    "cannot carry it: correct the frames in which they touch, or mend the recording; where "
+    "something else carries, give what rests on it a Point with Pushes Back"
+)
 # What may be done about keys that do not show what was solved.
 SAME_SCALE = (
     "Lengths change with the scale of {}: make it one number, for all axes and at all frames"
@@ -195,15 +200,13 @@ def unseen_lines(found: Sequence[UnseenSupportReport]) -> list[str]:
     """Where something unseen carries the body, with what may be done, and where it only turns it:
     lines."""
     carried, turned = ([u for u in found if (u.force_bw > CARRIES) == on] for on in (True, False))
-    lines = []
-    if carried:
-        spans = ", ".join(
-            f"{_frames_of(each)} ({plain(each.mean_bw)}, {plain(each.force_bw)})"
-            for each in carried
-        )
-        amounts = "by body weights, on average and at most"
-        told = f"Something unseen carries the body in frames ({amounts}) {spans}"
-        lines.append(f"{told}; {WHAT_CARRIES}")
+    on_hands, others = (
+        [u for u in carried if bool(u.beside_hands_m) is on] for on in (True, False)
+    )
+    lines = [f"{_carried(others)}; {WHAT_CARRIES}"] if others else []
+    if on_hands:
+        beside = ", ".join(length(each.beside_hands_m) for each in on_hands)
+        lines.append(f"{_carried(on_hands)}; {BESIDE_HANDS.format(beside)}")
     if turned:
         most = plain(max(each.moment_bw_m for each in turned))
         spans = ", ".join(map(_frames_of, turned))
@@ -212,6 +215,14 @@ def unseen_lines(found: Sequence[UnseenSupportReport]) -> list[str]:
             f"{most} body weights × metre in frames {spans}"
         )
     return lines
+
+
+def _carried(found: Sequence[UnseenSupportReport]) -> str:
+    spans = ", ".join(
+        f"{_frames_of(each)} ({plain(each.mean_bw)}, {plain(each.force_bw)})" for each in found
+    )
+    amounts = "by body weights, on average and at most"
+    return f"Something unseen carries the body in frames ({amounts}) {spans}"
 
 
 def _frames_of(each: UnseenSupportReport) -> str:

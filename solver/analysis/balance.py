@@ -52,10 +52,16 @@ def _beside(performance: Performance, schedule: ContactSchedule) -> FloatArray:
     count = np.maximum(touching.sum(axis=0), 1)
     ground = np.where(touching, tracks[..., 2], 0.0).sum(axis=0) / count
     point, loaded = _zero_moment_point(performance, ground)
+    return np.where(loaded & known, outside(point, tracks[..., :2], touching), 0.0)
+
+
+def outside(point: FloatArray, tracks: FloatArray, touching: BoolArray) -> FloatArray:
+    """(T,) m, how far a point (T, 2) on the ground is outside the hull of those that touch; 0 where
+    none does. tracks: (P, T, 2) m. touching: (P, T)."""
     # As far as it is beyond all points along the way in which that is furthest.
-    reached = np.where(touching[..., None], tracks[..., :2] @ _WAYS, -np.inf).max(axis=0)
-    beyond = (point @ _WAYS - reached).max(axis=1, where=known[:, None], initial=0.0)
-    return np.where(loaded, beyond, 0.0)
+    reached = np.where(touching[..., None], tracks @ _WAYS, -np.inf).max(axis=0)
+    some = touching.any(axis=0)[:, None]
+    return np.asarray((point @ _WAYS - reached).max(axis=1, where=some, initial=0.0))
 
 
 def touches_during(times: FloatArray, schedule: ContactSchedule, point: str) -> BoolArray:

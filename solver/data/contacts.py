@@ -185,6 +185,11 @@ class Touch:
         """Whether its point is on a sole."""
         return self.point.rpartition(" ")[2] in ("heel", "toe")
 
+    @property
+    def is_of_hand(self) -> bool:
+        """Whether its point is in a palm."""
+        return self.point.rpartition(" ")[2] == "hand"
+
 
 @dataclass(frozen=True)
 class Interval:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..analysis.balance import SURELY_LASTS
+from ..analysis.balance import LOADED, SURELY_LASTS, outside
 from ..arrays import BoolArray, FloatArray
 from ..data.constants import STANDARD_GRAVITY, UP
 from ..data.contacts import ContactSchedule, Interval
@@ -24,11 +24,13 @@ from ..data.reports.report import Report
 from ..fitting.fit import Fit
 from ..numerics.runs import runs
 from ..transcription.motion import Motion, pinned_instants
+from ..transcription.transcription import Transcription
 from ..unseen.free_fall import clear_falls
 from .flight_summary import scene_frame
 
 SAMPLE_RATE = 500.0  # Hz
 LEAST_FRAMES = 4  # that tell an acceleration
+MOST = 0.5  # of an interval, in which hands touch that carry in it
 APART = 0.1  # s; what is nearer is one interval
 
 Span = tuple[float, float]  # first and last frame
@@ -47,6 +49,8 @@ def unseen_support(fit: Fit, motion: Motion) -> Iterator[UnseenSupportReport]:
     moment = np.cross(arms - arms.mean(axis=1, keepdims=True), each).sum(axis=1)
     sizes, moments = (np.linalg.norm(v, axis=1) for v in (each.sum(axis=1), moment))
     acts = np.linalg.norm(each, axis=2).sum(axis=1) > CARRIES
+    on_hands = _on_hands(t, times)
+    beside = weight_beside(motion, times) if on_hands.any() else np.zeros_like(times)
     for first, last in support_intervals(times, sizes > CARRIES, acts):
         part = slice(first, last + 1)
         peak = first + int(sizes[part].argmax())
@@ -57,7 +61,35 @@ def unseen_support(fit: Fit, motion: Motion) -> Iterator[UnseenSupportReport]:
             peak_frame=scene_frame(fit, float(times[peak])),
             moment_bw_m=float(moments[part].max()),
             mean_bw=float(sizes[part].mean()),
+            beside_hands_m=_mean_on_hands(beside[part], on_hands[part]),
         )
+
+
+def _mean_on_hands(beside: FloatArray, on_hands: BoolArray) -> float:
+    """M, of instants (T,) in which a hand touches; 0 where these are few."""
+    return float(beside[on_hands].mean()) if on_hands.mean() > MOST else 0.0
+
+
+def _on_hands(t: Transcription, times: FloatArray) -> BoolArray:
+    """(T,) whether a hand touches."""
+    hands = [c.contact for c in t.contacts if c.contact.touch.is_of_hand]
+    return _during(times, [(hand.start, hand.end) for hand in hands])
+
+
+def weight_beside(motion: Motion, times: FloatArray) -> FloatArray:
+    """(T,) m, by how much one force that does what all do, the unseen among them, would meet the
+    ground beside what touches; 0 where nothing touches, or what carries is small."""
+    t = motion.transcription
+    touching = np.array([_during(times, [(c.contact.start, c.contact.end)]) for c in t.contacts])
+    points, forces = motion.contact_points(times), motion.forces(times)
+    tracks = np.swapaxes(points[:, [c.point for c in t.contacts]], 0, 1)
+    ground = np.where(touching, tracks[..., 2], 0.0).sum(axis=0)
+    high = points[..., 2] - (ground / np.maximum(touching.sum(axis=0), 1))[:, None]
+    upwards = forces[..., 2].sum(axis=1)
+    loaded = upwards > LOADED * t.character.mass * STANDARD_GRAVITY
+    arms = points[..., :2] * forces[..., 2:] - high[..., None] * forces[..., :2]
+    meets = arms.sum(axis=1) / np.where(loaded, upwards, np.inf)[:, None]
+    return np.where(loaded, outside(meets, tracks[..., :2], touching), 0.0)
 
 
 def support_intervals(
@@ -137,7 +169,7 @@ def _as_recorded(spans: Sequence[Span], result: Report) -> list[Span]:
 
 
 def _during(frames: FloatArray, spans: Sequence[Span]) -> BoolArray:
-    """(T,) which frames are in one of some spans."""
+    """(T,) which frames, or instants, are in one of some spans."""
     inside = np.zeros(len(frames), dtype=np.bool_)
     for first, last in spans:
         inside |= (frames >= first) & (frames <= last)

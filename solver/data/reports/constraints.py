@@ -84,6 +84,8 @@ class MovingGroundReport:
 class UnseenSupportReport:
     """Something that the recording does not show carries the body. At its largest: force_bw, body
     weights, at peak_frame; moment_bw_m about the pelvis, body weights x m. mean_bw: of the force.
+    beside_hands_m: how far the weight is beside what touches, in the mean over when hands do, where
+    that is most of it; else 0.
     """
 
     first_frame: float
@@ -92,6 +94,7 @@ class UnseenSupportReport:
     peak_frame: float
     moment_bw_m: float
     mean_bw: float
+    beside_hands_m: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -35,6 +35,16 @@ def test_all_frames_of_unseen_support_and_all_contacts_let_go_are_told() -> None
     assert accepted_lines(FitNeeds()) == []
 
 
+def test_where_hands_touch_already_it_is_told_how_far_the_weight_is_beside_them() -> None:
+    on_hands = UnseenSupportReport(47.0, 362.0, 1.31, 104.0, 0.3, 0.3, beside_hands_m=0.23)
+    seat = UnseenSupportReport(400.0, 420.0, 0.7, 410.0, 0.1, 0.5)
+    seated, handstand = accepted_lines(FitNeeds((on_hands, seat)))
+    assert "400 to 420" in seated
+    assert "47 to 362 (0.3, 1.31); hands touch there already" in handstand
+    assert "the weight is 23.0 cm beside hands and feet" in handstand
+    assert "Add Contact" not in handstand
+
+
 def test_what_turns_the_body_and_carries_nothing_of_it_is_told_by_itself() -> None:
     seat = UnseenSupportReport(1.0, 138.0, 0.005, 130.0, 0.118, 0.001)
     rises = UnseenSupportReport(139.0, 189.0, 0.94, 152.0, 0.09, 0.62)

@@ -1,7 +1,10 @@
 """In which intervals something unseen carries, and in which it only turns."""
 
+from dataclasses import replace
+
 import numpy as np
-from hangtime.solver.results.unseen_support import support_intervals
+from hangtime.solver.results.unseen_support import support_intervals, weight_beside
+from hangtime.tests.helpers.fitted_hop import fitted_hop
 
 TIMES = np.linspace(0.0, 1.0, 501)
 
@@ -30,3 +33,15 @@ def test_what_is_near_is_one_and_short_ends_are_none() -> None:
 
 def test_nothing_is_told_where_nothing_acts() -> None:
     assert told(between((2.0, 3.0)), between((2.0, 3.0))) == []
+
+
+def test_the_weight_is_over_what_carries_it_and_beside_what_is_left_of_that() -> None:
+    """Of a hop without anything unseen, and as if its right foot were not known to touch."""
+    motion = fitted_hop().motion
+    times = np.linspace(0.0, motion.duration, 200)
+    assert weight_beside(motion, times).max() < 0.01
+    t = motion.transcription
+    left = tuple(each for each in t.contacts if each.contact.bone.startswith("Left"))
+    assert 0 < len(left) < len(t.contacts)
+    beside = weight_beside(replace(motion, transcription=replace(t, contacts=left)), times)
+    assert 0.03 < beside.max() < 0.4
