@@ -25,9 +25,8 @@ from ...solver.doctor.repairs import Repairs
 from ...solver.worker.protocol import Analysed
 from ..accessors import current_scene
 from ..armature.poses import frames_per_second, metres_per_unit
-from ..properties.contact import HangtimeContact
 from ..properties.settings import HangtimeSettings
-from ..properties.stances import active_contact, move_empties, place
+from ..properties.stances import active_contact, move_empties, place, remember, stance_contacts
 from ..repairs.analysis_key import analysis_key, span_of
 from ..repairs.stored import applied, of_recording, unreadable
 from ..repairs.unreadable import require_readable
@@ -48,6 +47,7 @@ from .bone_mapping import chosen_parts
 from .requests import joined, requests_of
 
 _METRES_PER_MM = 1e-3
+_UNTURNED = 1e-4  # rad
 
 
 def problem_of(
@@ -197,7 +197,9 @@ def _added(settings: HangtimeSettings) -> tuple[AddedContact, ...]:
 def _pins(settings: HangtimeSettings, span: tuple[float, float], held: str) -> tuple[Pin, ...]:
     """A pin for each contact that has been moved, stands on a surface, or is held.
 
-    Corrections renumber contacts and phases, so pins name both as they are called afterwards.
+    Each states its stance's turn, too: places do not tell a half turn left from one right, nor a
+    whole turn from none. Corrections renumber contacts and phases, so pins name both as they are
+    called afterwards.
     """
     metres = metres_per_unit(current_scene())
     rate = frames_per_second(current_scene())
@@ -210,19 +212,27 @@ def _pins(settings: HangtimeSettings, span: tuple[float, float], held: str) -> t
     )
     schedule = ContactSchedule(numbered(bare), duration, 0.0, unseen)
     called = {(c.point, c.start): c.name for c in schedule.contacts}
+    turns = {stance.name: stance.turned for stance in settings.stances}
+    spun = {name for name, turn in turns.items() if _spun(settings, name, turn)}
     pins = []
     for row, contact in zip(used, bare, strict=True):
         phase = _ground_phase(schedule, contact)
         on = next((each.name for each in ground if each.object == row.on), None)
-        if phase is None or not (moved(row) or on or row.name == held):
+        if phase is None or not (moved(row) or on or row.name == held or row.phase in spun):
             continue
         x, y, z = (metres * value for value in row.at)
-        name = called[contact.point, contact.start]
-        pins.append(Pin(row.name, phase.name, (name,), place=(x, y, z), on=on))
+        name, turn = called[contact.point, contact.start], turns.get(row.phase, 0.0)
+        pins.append(Pin(row.name, phase.name, (name,), place=(x, y, z), turn=turn, on=on))
     return tuple(pins)
 
 
-def moved(row: HangtimeContact) -> bool:
+def _spun(settings: HangtimeSettings, phase: str, turn: float) -> bool:
+    """Whether a stance is turned, rad, and all of it is where it was recorded, as after a whole
+    turn, or as a single contact is after any."""
+    return abs(turn) > _UNTURNED and not any(map(moved, stance_contacts(settings, phase)))
+
+
+def moved(row: ContactRow) -> bool:
     """Whether a contact is to be elsewhere than recorded."""
     return any(abs(a - b) > UNMOVED for a, b in zip(row.at, row.found_at, strict=True))
 
@@ -246,6 +256,7 @@ def write_analysis(
     Names of those that were edited and are not found any more."""
     edits = [HeldContact.of(row) for row in listed(settings) if not row.added]
     added = [HeldContact.of(row) for row in listed(settings) if row.added]
+    turns = {each.name: each.turned for each in settings.stances if isfinite(each.turned)}
     metres = metres_per_unit(current_scene())
     first, rate = span_of(settings, recording)[0], frames_per_second(current_scene())
     settings.measured_height = found.height
@@ -273,7 +284,7 @@ def write_analysis(
         row.found_at = row.at = contact.place / metres
     for row, kept in zip(rows[len(contacts) :], added, strict=True):
         _put(row, kept)
-    lost = _restore(settings, edits, found.schedule, first)
+    lost = _restore(settings, edits, turns, found.schedule, first)
     settings.active_contact = min(settings.active_contact, len(settings.contacts) - 1)
     if not edits or active_contact(settings) is None:
         _choose_first_landing(settings)
@@ -303,11 +314,12 @@ def _put(row: ContactRow, held: HeldContact) -> None:
 def _restore(
     settings: HangtimeSettings,
     edits: Sequence[HeldContact],
+    turns: Mapping[str, float],
     schedule: ContactSchedule,
     first: float,
 ) -> tuple[str, ...]:
     """Gives contacts their edits, and takes added ones along; names of those that were edited and
-    are not found any more."""
+    are not found any more. turns: of the stances that were, rad."""
     rows = [row for row in settings.contacts if not row.added]
     metre = 1.0 / metres_per_unit(current_scene())
     again = found_again(rows, edits, metre)
@@ -316,6 +328,8 @@ def _restore(
         row.used = edit.used
         row.start_frame = frame_of(row.found_start, edit.found_start, edit.start_frame)
         row.end_frame = frame_of(row.found_end, edit.found_end, edit.end_frame)
+        if row.phase in settings.stances:
+            settings.stances[row.phase].turned = turns.get(edit.phase, 0.0)
     going = movers(rows, again.contacts)
     for i, edit in going.items():
         move = again.displacement.direction(edit.move)
@@ -324,6 +338,8 @@ def _restore(
         rows[i].on = edit.on
     for i, edit in again.contacts.items():
         rows[i].empty = edit.empty
+    for stance in settings.stances:
+        remember(settings, stance.name)
     move_empties(settings)
     if not again.displacement.slight(metre):
         _take_along(settings, again.displacement, schedule, first)

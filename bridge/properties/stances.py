@@ -40,7 +40,7 @@ def place(
     shift = Vector(to) - Vector(row.at)
     for contact in moving_with(settings, row, whole=whole):
         _put(contact, Vector(contact.at) + shift)
-    _remember(settings, row.phase)
+    remember(settings, row.phase)
 
 
 def moving_with(
@@ -257,7 +257,7 @@ def follow_moving(settings: Settings, places: Mapping[str, Sequence[float]]) -> 
             if contact.name not in {*places, *led}:
                 led.add(contact.name)
                 _put(contact, Vector(contact.at) + to - was)
-        _remember(settings, row.phase)
+        remember(settings, row.phase)
 
 
 def may_mark(empty: bpy.types.Object, armature: bpy.types.Object) -> bool:
@@ -290,8 +290,9 @@ def _shift_empty(row: ContactRow, by: Vector) -> None:
     empty.matrix_world = world
 
 
-def _remember(settings: Settings, phase: str) -> None:
-    """Keeps a stance's shift and turn to what its contacts' places say."""
+def remember(settings: Settings, phase: str) -> None:
+    """Keeps a stance's shift and turn to what its contacts' places say: of whole turns, and of any
+    where a single contact tells it, they say nothing."""
     stance = settings.stances.get(phase)
     contacts = telling(stance_contacts(settings, phase))
     if stance is None or not contacts:
@@ -301,6 +302,8 @@ def _remember(settings: Settings, phase: str) -> None:
     if not all(map(isfinite, new[:])):  # which a solve tells, and Put Back mends
         return
     stance.shifted = _axes(stance).transposed() @ (new - old)
+    if len(contacts) == 1:
+        return
     arms = [(Vector(a) - old, Vector(b) - new) for a, b in zip(found, now, strict=True)]
     across = sum(a.x * b.y - a.y * b.x for a, b in arms)
     along = sum(a.x * b.x + a.y * b.y for a, b in arms)

@@ -61,7 +61,6 @@ from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.doubt_text import distance_doubts, doubts_of, empty_doubts
-from ..words.request_doubt_text import whole_turn_doubts
 from .common import chosen_armature, hindrance, quick_solution, refined_solution, required_armature
 from .keys import key_options
 from .live import live
@@ -251,7 +250,6 @@ def window_doubts(
     return [
         *doubts_of(problem, height, recording.frames, timed_phases(settings, recording), jumped),
         *distance_doubts(problem, recording.heads),
-        *whole_turn_doubts((stance.name, stance.turned) for stance in settings.stances),
     ]
 
 

@@ -116,17 +116,6 @@ def contact_doubts(
     ]
 
 
-def whole_turn_doubts(turns: Iterable[tuple[str, float]]) -> list[str]:
-    """A line for each stance that was turned by more than a whole turn, rad, by its places alone,
-    which do not tell that."""
-    return [
-        f"{name.capitalize()} is turned by {degrees(turn):.0f}°, but whole turns of a stance are "
-        "not jumped; an Orientation in the flight tells which way the body turns"
-        for name, turn in turns
-        if _winds(turn)
-    ]
-
-
 def _of_gravity(gravity: float) -> Iterator[str]:
     if gravity > MOST_GRAVITY:
         yield f"Gravity is {gravity:g} m/s², more than on any planet; the Earth's is 9.81"
@@ -186,21 +175,19 @@ def _of_timing(timing: PhaseTiming, phase: Phase, gravity: float) -> Iterator[st
 
 
 def _of_turns(problem: MotionProblem) -> Iterator[str]:
-    for pin in problem.pins:
-        if _winds(pin.turn):
-            yield (
-                f"“{pin.name}” turns {pin.phase} by {degrees(pin.turn):.0f}°, and the body has to "
-                f"make all of these {abs(pin.turn) / tau:.3g} turns on its way there"
-            )
+    wound = [pin for pin in problem.pins if abs(pin.turn) > tau + ROUNDING]
+    for phase, turn in dict.fromkeys((pin.phase, pin.turn) for pin in wound):
+        names = [pin.name for pin in wound if (pin.phase, pin.turn) == (phase, turn)]
+        turns = "turns" if len(names) == 1 else "turn"
+        yield (
+            f"{quoted(names)} {turns} {phase} by {degrees(turn):.0f}°, and the body has to make "
+            f"all of these {abs(turn) / tau:.3g} turns on its way there"
+        )
     for asked in problem.requests.orientations:
         for angle in (asked.turn, asked.tilt):
             if abs(angle) > tau - ROUNDING:
                 same = round(degrees(angle - tau * round(angle / tau)))
                 yield f"“{asked.name}” asks for {degrees(angle):.0f}°, which is {same}°"
-
-
-def _winds(turn: float) -> bool:
-    return abs(turn) > tau + ROUNDING
 
 
 def _of_leaps(problem: MotionProblem, leaps: Sequence[Leap]) -> Iterator[str]:

@@ -8,7 +8,6 @@ import pytest
 from hangtime.operators.words.request_doubt_text import (
     direction_doubts,
     request_doubts,
-    whole_turn_doubts,
 )
 from hangtime.solver.analysis.leaps import Leap
 from hangtime.solver.data.contacts import Phase, PhaseKind
@@ -139,9 +138,11 @@ def test_a_recorded_leap_is_not_asked_about_however_far_it_goes() -> None:
     )
 
 
-def test_a_stance_that_is_wound_by_its_places_is_told() -> None:
-    (told,) = whole_turn_doubts([("ground 1", radians(-350.0)), ("ground 2", radians(720.0))])
-    assert told.startswith("Ground 2 is turned by 720°, but whole turns of a stance are not jumped")
+def test_a_stance_that_contacts_wind_is_told_once() -> None:
+    names = ("Left toe 2", "Left heel 2")
+    pins = tuple(Pin(name, "ground 2", turn=radians(720.0)) for name in names)
+    (told,) = request_doubts(MotionProblem(pins=pins), PHASES, [])
+    assert told.startswith("“Left toe 2”, “Left heel 2” turn ground 2 by 720°, and the body has to")
 
 
 def test_who_moves_a_backward_landing_forward_is_told_which_way_that_is() -> None:
