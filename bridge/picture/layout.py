@@ -137,14 +137,10 @@ def canvas_of(rows: Sequence[SheetRow], view: View) -> Canvas:
 
 
 def canvas_axes(rows: Sequence[SheetRow], heading: tuple[float, float] | None = None) -> FloatArray:
-    """(3, 3) world to canvas: x along the heading, or the travel, or where the body faces if it
-    hardly travels."""
+    """(3, 3) world to canvas: x along the heading, or else the travel, or the world's x."""
     travel = sum((row.com[-1] - row.com[0] for row in rows), np.zeros(3))[:2] / len(rows)
     if heading is not None:
         travel = np.array(heading)
-    elif np.hypot(*travel) < 0.3:
-        trunk = max(rows[0].limbs, key=lambda limb: float(np.prod(limb.size)))
-        travel = trunk.rotation[:, :2, 1].mean(axis=0)
     if np.hypot(*travel) < 1e-6:
         travel = np.array([1.0, 0.0])
     x, y = travel / np.hypot(*travel)

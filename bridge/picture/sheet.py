@@ -11,8 +11,7 @@ from .annotations import Mark
 class Limb:
     """One rigid body, drawn as a solid.
 
-    size: (3,) extents m of its box: width, depth, length along the axes of the body's frame. The
-    trunk's depth axis points to where the body faces.
+    size: (3,) extents m of its box: width, depth, length along the axes of the body's frame.
     centre: (T, 3) m, world. rotation: (T, 3, 3), body to world.
     """
 

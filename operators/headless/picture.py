@@ -12,6 +12,7 @@ from ...bridge.picture.film import draw_film
 from ...bridge.picture.layout import canvas_axes
 from ...bridge.picture.render import draw_sheet
 from ...bridge.picture.sheet import Limb, SheetRow, View
+from ...solver.analysis.pinned_places import facing
 from ...solver.arrays import FloatArray
 from ...solver.body.anatomy import Part
 from ...solver.body.character import Character
@@ -58,11 +59,20 @@ def both_rows(
     return recorded_row(adaptation, recorded), adapted_row(adaptation, title, adapted)
 
 
-def heading(adaptation: Adaptation) -> tuple[float, float] | None:
-    """Direction of travel, so that a diagonal shows as one; None where there is hardly any."""
-    com = adaptation.fit.performance.com
-    x, y = (com[-1] - com[0])[:2].tolist()
-    return (x, y) if np.hypot(x, y) > TRAVELS else None
+def heading(adaptation: Adaptation) -> tuple[float, float]:
+    """Direction to the right in the picture: of the recording's travel, so that a diagonal shows as
+    one, else of the result's. Who hardly travels faces that way at the first take-off, else at the
+    start: later he may stand on his hands."""
+    performance, motion = adaptation.fit.performance, adaptation.motion
+    ends = motion.com(np.array([0.0, motion.duration]))
+    for com in (performance.com, ends):
+        x, y = (com[-1] - com[0])[:2].tolist()
+        if np.hypot(x, y) > TRAVELS:
+            return x, y
+    phases = adaptation.fit.schedule.phases
+    flights = (phase.start for phase in phases if phase.kind is PhaseKind.FLIGHT)
+    x, y, _ = facing(performance, next(flights, 0.0)).tolist()
+    return x, y
 
 
 def goes_sideways(adaptation: Adaptation, axes: FloatArray) -> bool:

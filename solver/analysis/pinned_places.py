@@ -180,7 +180,7 @@ def travel_axes(performance: Performance, schedule: ContactSchedule, phase: Phas
     ahead = (end - start) * np.array([1.0, 1.0, 0.0])
     gone, seconds = float(np.linalg.norm(ahead)), flight.end - flight.start
     if gone < FOOT_LENGTH * performance.character.height and gone < SLOW_WALK * seconds:
-        ahead = _facing(performance, flight.start)
+        ahead = facing(performance, flight.start)
     ahead /= np.linalg.norm(ahead)
     return np.stack([ahead, np.cross(UP, ahead), UP], axis=1)
 
@@ -192,9 +192,9 @@ def backward_stances(performance: Performance, schedule: ContactSchedule) -> tup
 
 def _goes_backwards(performance: Performance, schedule: ContactSchedule, phase: Phase) -> bool:
     """As the body faces at the take-off."""
-    facing = _facing(performance, _flight_of(schedule, phase).start)
+    faces = facing(performance, _flight_of(schedule, phase).start)
     ahead = travel_axes(performance, schedule, phase)[:, 0]
-    return float(facing @ ahead) < BACKWARDS * float(np.linalg.norm(facing))
+    return float(faces @ ahead) < BACKWARDS * float(np.linalg.norm(faces))
 
 
 def _flight_of(schedule: ContactSchedule, phase: Phase) -> Phase:
@@ -204,7 +204,7 @@ def _flight_of(schedule: ContactSchedule, phase: Phase) -> Phase:
     return before[-1] if before else (flights[0] if flights else phase)
 
 
-def _facing(performance: Performance, time: float) -> FloatArray:
+def facing(performance: Performance, time: float) -> FloatArray:
     """(3,) level direction in which the pelvis faces, not normalised."""
     frame = int(np.argmin(np.abs(performance.times - time)))
     width = performance.rotations[frame, 0] @ performance.character.bodies[0].box_rotation[:, 0]

@@ -244,11 +244,8 @@ def test_key_times_that_would_hide_each_other_are_not_both_shown(rows):
     assert 0.57 not in np.round(times, 2)
 
 
-def test_a_jump_in_place_faces_right_and_is_spread():
-    row = hopper("In place", further=-1.0, heading=0.7)
-    axes = layout.canvas_axes([row])
-    facing = axes @ row.limbs[0].rotation[0][:, 1]
-    np.testing.assert_allclose(facing, [1.0, 0.0, 0.0], atol=1e-9)
+def test_a_jump_in_place_is_spread():
+    row = hopper("In place", further=-1.0)
     x = [figure.com[0] for figure in layout.lay_out([row]).tiers[0].figures]
     assert np.diff(x).min() > 0.3
 

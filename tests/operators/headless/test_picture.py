@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,14 +13,17 @@ from hangtime.operators.headless.picture import (
     ContactHold,
     bars,
     goes_sideways,
+    heading,
     limbs,
     recorded_row,
 )
 from hangtime.solver.analysis.performance import perform
-from hangtime.solver.body.anatomy import Part
+from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import build_character
+from hangtime.solver.data.constants import UP
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import Hold, Requests
+from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.tests.helpers.clips import JUMP, load_recording
 from hangtime.tests.helpers.fitted_hop import fitted_hop
@@ -58,6 +62,23 @@ def test_it_is_seen_from_above_where_contacts_went_sideways_also_without_the_lan
     assert goes_sideways(moved, np.array([[x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, 1.0]])) == (
         left > 0.0
     )
+
+
+def test_who_hardly_travels_faces_right_whatever_he_does_later() -> None:
+    """By the mean over a handstand, upside down for most of it, forward was to the left."""
+    recording = load_recording("131_03_hop.bvh")
+    character = build_character(recording)
+    found = perform(recording, character)
+    hips = {body.side: i for i, body in enumerate(character.bodies) if body.part is Part.THIGH}
+    left = found.centres[0, hips[Side.LEFT]] - found.centres[0, hips[Side.RIGHT]]
+    ahead = np.cross(left, UP)[:2]
+    still = replace(found, com=found.com * [0.0, 0.0, 1.0], rotations=found.rotations.copy())
+    around = axis_rotation(2, np.pi)
+    still.rotations[60:] = around @ still.rotations[60:]
+    motion = SimpleNamespace(duration=1.0, com=lambda times: np.zeros((len(times), 3)))
+    fit = SimpleNamespace(performance=still, schedule=SimpleNamespace(phases=()))
+    seen = np.array(heading(SimpleNamespace(fit=fit, motion=motion)))  # type: ignore[arg-type]
+    assert seen @ ahead > 0.99 * np.linalg.norm(seen) * np.linalg.norm(ahead)
 
 
 @cache
