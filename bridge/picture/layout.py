@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
-from .annotations import Mark, Sphere, Thing, Tint, Tone, at, moved
+from .annotations import Bar, Mark, Sphere, Thing, Tint, Tone, at, moved
 from .instants import during, instants, nearest, same_instants, spread
 from .mark_meshes import Solid, merged, solids
 from .sheet import Limb, SheetRow, View
@@ -19,7 +19,9 @@ TOUCHES = 0.04  # m, a limb nearer to a pin than this is held by it
 RAISED = 0.05  # m, a pin this far above the floor stands on a step
 STEP_MARGIN = 0.22  # m, how far a step reaches beyond its pins
 STEP_GAP = 1.4  # m, pins further apart than this stand on different steps
+BESIDE = 0.05  # m from an object, within which a hand's point touches it
 RIGHT = np.array([1.0, 0.0, 0.0])
+STAGGER = np.array([0.0, 1e-3, -1e-3])  # m; faces of two copies in one plane would be drawn black
 
 
 @dataclass(frozen=True)
@@ -174,7 +176,7 @@ def _tier(row: SheetRow, slide: FloatArray, wished: FloatArray, floor: float) ->
     figures = tuple(
         Figure(float(row.times[i]), centre[i], rotation[i], path[i], _tones(row, i)) for i in shown
     )
-    drawn = [*map(Sphere, pins), *_marks(row, slide, shown)]
+    drawn = [*map(Sphere, pins), *_marks(row, held, slide, shown)]
     return Tier(
         row.title,
         figures,
@@ -189,13 +191,47 @@ def _tier(row: SheetRow, slide: FloatArray, wished: FloatArray, floor: float) ->
     )
 
 
-def _marks(row: SheetRow, slide: FloatArray, shown: Sequence[int]) -> Iterable[Mark]:
-    """Every mark with every figure it belongs to, where that figure is drawn; where figures are in
-    place an object stands there once, as it is with the last of them."""
+def _marks(
+    row: SheetRow, held: Sequence[Sequence[int]], slide: FloatArray, shown: Sequence[int]
+) -> Iterable[Mark]:
+    """Every mark with every figure it belongs to, where that figure is drawn; what stands still
+    where figures are in place, once, as it is with the last of them. held: as of `_pins`."""
+    touches = [*zip(row.pins, held, strict=True)]
     for mark in row.marks:
-        once = isinstance(mark, Thing) and not slide.any()
-        for i in during(mark.span, row.times, shown)[-1 if once else 0 :]:
-            yield moved(at(mark, i), np.eye(3), slide[i] * RIGHT)
+        if isinstance(mark, Sphere):
+            touches += ((at(mark, i).place, [i]) for i in during(mark.span, row.times, shown))
+    for mark in row.marks:
+        when = during(mark.span, row.times, shown)
+        if isinstance(mark, Thing | Bar) and not slide.any():
+            when = when[-1:]
+        if isinstance(mark, Thing):
+            yield from _things(mark, touches, slide, when)
+        else:
+            yield from (moved(at(mark, i), np.eye(3), slide[i] * RIGHT) for i in when)
+
+
+def _things(
+    thing: Thing,
+    touches: Sequence[tuple[FloatArray, Sequence[int]]],
+    slide: FloatArray,
+    when: Sequence[int],
+) -> Iterable[Thing]:
+    """An object with those figures that touch it, as a step goes on below them; one that none does
+    as often as it is beside itself. touches: places (3,) m, before they slide, with instants."""
+    copies = {i: at(thing, i) for i in when}
+    on = [i for i in when if any(i in held and _is_on(copies[i], p) for p, held in touches)]
+    end = -np.inf
+    for k, i in enumerate(on or when):
+        low, high = (edge(copies[i].points[:, 0]) + slide[i] for edge in (np.min, np.max))
+        if on or low > end:
+            end = high
+            yield moved(copies[i], np.eye(3), slide[i] * RIGHT + k * STAGGER)
+
+
+def _is_on(thing: Thing, place: FloatArray) -> bool:
+    """Whether a point (3,) m is in the box around an object, or nearly."""
+    low, high = thing.points.min(axis=0) - BESIDE, thing.points.max(axis=0) + BESIDE
+    return bool(((low < place) & (place < high)).all())
 
 
 def _tones(row: SheetRow, instant: int) -> dict[int, Tone]:

@@ -32,7 +32,6 @@ from .picture import instants
 DENSITY = 1000.0  # kg/m³, of what is carried
 SHAPE = np.array([0.9, 1.6, 0.7])  # of a cube's sides; thin where a hanging arm faces sideways
 ARC = 0.7  # radius of a limit's line, as a share of the limb
-SINKING = 0.005  # m/s, of a moving object in the picture
 BESIDE = 0.1  # m from an object's box, within which a figure is by it
 SAME = np.radians(0.5)  # limits nearer than this fix the joint
 
@@ -181,8 +180,6 @@ def _thing(thing: SceneObject, line: Timeline, times: FloatArray, com: FloatArra
     if not thing.moves:
         places, turns = places[0], turns[0]
     points = thing.vertices @ np.swapaxes(turns, -1, -2) + places[..., None, :]
-    if thing.moves:  # faces of two instants in one plane would be drawn black
-        points[..., 2] -= SINKING * times[:, None]
     low, high = points.min(axis=-2) - BESIDE, points.max(axis=-2) + BESIDE
     by = ((com > low) & (com < high))[:, :2].all(axis=1)
     when = times[by] if by.any() else times[[0, -1]]

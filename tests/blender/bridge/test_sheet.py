@@ -204,17 +204,39 @@ def test_a_raised_landing_stands_on_a_step_and_the_ground_does_not(rows):
     assert step.left < min(landed) < max(landed) < step.right
 
 
+def plate(height: float) -> Thing:
+    """A triangle, 1 m wide."""
+    corners = np.array([[0.0, 0.0, height], [1.0, 0.0, height], [0.0, 1.0, height]])
+    return Thing(corners, np.array([[0, 1, 2]]))
+
+
+def copies(tier: layout.Tier) -> np.ndarray:
+    """(N, 2) m: where the plates that are drawn begin and end, of seven points each."""
+    (drawn,) = (solid for solid in tier.marks if solid.look is Look.THING)
+    x = drawn.mesh.points[:, 0].reshape(-1, 7)
+    return np.stack([x.min(axis=1), x.max(axis=1)], axis=1)
+
+
 def test_in_place_nothing_slides_and_an_object_is_there_once(rows):
-    corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-    plate = Thing(corners, np.array([[0, 1, 2]]))
-    row = replace(rows[0], marks=(plate,))
+    row = replace(rows[0], marks=(plate(0.0),))
     (tier,) = layout.lay_out([row], View(in_place=True)).tiers
     assert np.ptp(tier.path[:, 0]) == pytest.approx(np.ptp(row.com[:, 0]))
+    assert len(copies(tier)) == 1
+
+
+def test_an_object_is_with_every_figure_that_touches_it_and_in_no_plane_twice(rows):
+    (tier,) = layout.lay_out([replace(rows[0], marks=(plate(0.0),))]).tiers
+    on = [each.time for each in tier.figures if not 0.42 < each.time < 0.68]
+    assert len(copies(tier)) == len(on) < len(tier.figures)
     (drawn,) = (solid for solid in tier.marks if solid.look is Look.THING)
-    assert len(drawn.mesh.faces) == 3  # of its one triangle
-    (slid,) = layout.lay_out([row]).tiers
-    (often,) = (solid for solid in slid.marks if solid.look is Look.THING)
-    assert len(often.mesh.faces) == 3 * len(slid.figures)
+    assert len(np.unique(drawn.mesh.points[:, 2].round(6))) == len(on)
+
+
+def test_an_object_that_nobody_touches_does_not_overlap_itself(rows):
+    (tier,) = layout.lay_out([replace(rows[0], marks=(plate(2.0),))]).tiers
+    ends = copies(tier)
+    assert len(ends) > 1
+    assert (ends[1:, 0] > ends[:-1, 1]).all()
 
 
 def test_travel_runs_to_the_right_whatever_the_heading():
