@@ -61,17 +61,13 @@ def both_rows(
 
 def heading(adaptation: Adaptation) -> tuple[float, float]:
     """Direction to the right in the picture: of the recording's travel, so that a diagonal shows as
-    one, else of the result's. Who hardly travels faces that way at the first take-off, else at the
+    one, else of the mean travel of recording and result. Who hardly travels faces that way at the
     start: later he may stand on his hands."""
     performance, motion = adaptation.fit.performance, adaptation.motion
-    ends = motion.com(np.array([0.0, motion.duration]))
-    for com in (performance.com, ends):
-        x, y = (com[-1] - com[0])[:2].tolist()
-        if np.hypot(x, y) > TRAVELS:
-            return x, y
-    phases = adaptation.fit.schedule.phases
-    flights = (phase.start for phase in phases if phase.kind is PhaseKind.FLIGHT)
-    x, y, _ = facing(performance, next(flights, 0.0)).tolist()
+    recorded, adapted = performance.com, motion.com(np.array([0.0, motion.duration]))
+    was, now = (com[-1, :2] - com[0, :2] for com in (recorded, adapted))
+    ways = [way for way in (was, 0.5 * (was + now)) if np.linalg.norm(way) > TRAVELS]
+    x, y = (ways or [facing(performance, 0.0)[:2]])[0].tolist()
     return x, y
 
 

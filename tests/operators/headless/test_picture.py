@@ -76,7 +76,7 @@ def test_who_hardly_travels_faces_right_whatever_he_does_later() -> None:
     around = axis_rotation(2, np.pi)
     still.rotations[60:] = around @ still.rotations[60:]
     motion = SimpleNamespace(duration=1.0, com=lambda times: np.zeros((len(times), 3)))
-    fit = SimpleNamespace(performance=still, schedule=SimpleNamespace(phases=()))
+    fit = SimpleNamespace(performance=still)
     seen = np.array(heading(SimpleNamespace(fit=fit, motion=motion)))  # type: ignore[arg-type]
     assert seen @ ahead > 0.99 * np.linalg.norm(seen) * np.linalg.norm(ahead)
 
