@@ -67,6 +67,14 @@ class Tier:
     steps: tuple[Step, ...]
     marks: tuple[Solid, ...]
 
+    def reach(self, direction: FloatArray) -> float:
+        """How far, m, figures and marks go along a unit direction (3,)."""
+        half = [np.abs(direction @ each.rotation) * self.sizes / 2 for each in self.figures]
+        both = zip(self.figures, half, strict=True)
+        tops = [figure.centre @ direction + each.sum(axis=1) for figure, each in both]
+        marks = [mark.mesh.points @ direction for mark in self.marks]
+        return float(np.concatenate([*tops, *marks]).max())
+
     def corners(self) -> FloatArray:
         """(2, 3) lowest and highest corner of the box that figures and marks fill."""
         half = [np.abs(figure.rotation) @ self.sizes[:, :, None] / 2 for figure in self.figures]

@@ -127,11 +127,13 @@ class Painter:
         middle = ground + (left + right) / 2 * ACROSS + (crown + bottom) / 2 * self.up
         self.camera(middle, wide, crown - bottom + 2 * EDGE, width)
 
-    def head(self, tier: Tier, floor: Floor, elevation: float) -> float:
+    @staticmethod
+    def head(tier: Tier, floor: Floor, elevation: float) -> float:
         """Height of tier and floor above the middle of the floor in the picture, m."""
-        _, back, top = tier.corners()[1]
-        body = min(back, 0.2) * sin(elevation) + (top - floor.low[2]) * cos(elevation)
-        return float(max(body, floor.high[1] * sin(elevation)))
+        up = np.array([0.0, sin(elevation), cos(elevation)])
+        top = max((step.top for step in tier.steps), default=floor.high[2])
+        back = np.array([0.0, floor.high[1], top])
+        return max(tier.reach(up), float(back @ up)) - float(floor.low[2]) * cos(elevation)
 
     def stage(self, floor: Floor) -> None:
         down = np.array([0.0, 0.0, THICKNESS])

@@ -7,22 +7,25 @@ from pathlib import Path
 
 import numpy as np
 
-from ...bridge.picture.annotations import Bar, Mark, Sphere, TimeSpan
+from ...bridge.picture.annotations import Bar, Mark, Sphere, Thing, TimeSpan
 from ...bridge.picture.film import draw_film
-from ...bridge.picture.layout import canvas_axes
+from ...bridge.picture.layout import RAISED, canvas_axes
 from ...bridge.picture.render import draw_sheet
 from ...bridge.picture.sheet import Limb, SheetRow, View
+from ...solver.analysis.performance import PALM_DEPTH
 from ...solver.analysis.pinned_places import facing
 from ...solver.arrays import FloatArray
 from ...solver.body.anatomy import Part
 from ...solver.body.character import Character
-from ...solver.data.contacts import Phase, PhaseKind
+from ...solver.data.constants import UP
+from ...solver.data.contacts import Contact, Phase, PhaseKind
 from ...solver.data.problem import MotionProblem, OffsetAxes, Pin
 from ...solver.stages.implicit import Adaptation
 from ...solver.transcription.motion import Motion
 
 FEET = (Part.FOOT, Part.TOE)
 BESIDE_HANDS = 0.3  # m, how far a bar reaches beyond the hands that hold it
+POST = 0.09  # m, radius of what a hand rests on
 TRAVELS = 0.3  # m, less is no direction
 SIDEWAYS = 0.1  # m, from where on a change is hardly seen from the side
 APART = 1.05  # halves of a pelvis, as long as it is drawn; a joint farther off leaves a gap
@@ -87,7 +90,17 @@ def recorded_row(adaptation: Adaptation, marks: Sequence[Mark] = ()) -> SheetRow
     performance, schedule = adaptation.fit.performance, adaptation.fit.schedule
     parts = {body.bone: body.part for body in performance.character.bodies}
     feet = [contact for contact in schedule.contacts if parts[contact.bone] in FEET]
-    others = [contact for contact in schedule.contacts if contact not in feet]
+    depth = PALM_DEPTH * performance.character.height
+    others = [
+        ContactHold(
+            parts[c.bone], c.place, (c.start, c.end), False, _depth(c, schedule.floor_m, depth)
+        )
+        for c in schedule.contacts
+        if c not in feet
+    ]
+    beside = (*(Sphere(hold.place, hold.span) for hold in others), *marks)
+    if not any(isinstance(mark, Thing) for mark in marks):
+        beside += tuple(posts(others, schedule.floor_m, performance.times, performance.com))
     return SheetRow(
         f"Recording: {performance.recording.name}",
         performance.times,
@@ -96,7 +109,7 @@ def recorded_row(adaptation: Adaptation, marks: Sequence[Mark] = ()) -> SheetRow
         np.array([c.place for c in feet]).reshape(-1, 3),
         key_times(adaptation.fit.motion, schedule.phases),
         tuple((c.start, c.end) for c in feet),
-        (*(Sphere(c.place, (c.start, c.end)) for c in others), *marks),
+        beside,
     )
 
 
@@ -105,10 +118,14 @@ def adapted_row(adaptation: Adaptation, title: str, marks: Sequence[Mark] = ()) 
     motion, phases = adaptation.motion, adaptation.setup.schedule.phases
     t, times = motion.transcription, instants(motion)
     posed, com = motion.pose(times), motion.com(times)
-    holds = tuple(contact_holds(motion, times))
+    floor = adaptation.setup.schedule.floor_m
+    holds = tuple(contact_holds(motion, times, floor))
     feet = [hold for hold in holds if hold.part in FEET and hold.place.ndim == 1]
     others = [hold for hold in holds if hold not in feet]
     ground = [*adaptation.fit.places[:, 2], *(hold.place[2] for hold in feet)]
+    beside = (*(Sphere(hold.place, hold.span) for hold in others), *bars(others), *marks)
+    if not any(isinstance(mark, Thing) for mark in marks):
+        beside += tuple(posts(others, min(ground, default=floor), times, com))
     return SheetRow(
         title,
         times,
@@ -117,7 +134,7 @@ def adapted_row(adaptation: Adaptation, title: str, marks: Sequence[Mark] = ()) 
         np.array([hold.place for hold in feet]).reshape(-1, 3),
         key_times(motion, phases),
         tuple(hold.span for hold in feet),
-        (*(Sphere(hold.place, hold.span) for hold in others), *bars(others), *marks),
+        beside,
         min(ground, default=None),
     )
 
@@ -126,25 +143,46 @@ def adapted_row(adaptation: Adaptation, title: str, marks: Sequence[Mark] = ()) 
 class ContactHold:
     """Place, m, and interval of a contact of one part of the body.
 
-    place: (3,), or (T, 3) where it moves. grip: whether the part holds on there.
+    place: (3,), or (T, 3) where it moves. grip: whether the part holds on there. depth: m from the
+    place down to what a part that does not rests on.
     """
 
     part: Part
     place: FloatArray
     span: TimeSpan
     grip: bool
+    depth: float = 0.0
 
 
-def contact_holds(motion: Motion, times: FloatArray) -> Iterator[ContactHold]:
-    """Every contact of a motion; where it moves, at the instants (T,)."""
+def contact_holds(motion: Motion, times: FloatArray, floor: float) -> Iterator[ContactHold]:
+    """Every contact of a motion; where it moves, at the instants (T,). floor: m, as recorded."""
     t = motion.transcription
+    depth = PALM_DEPTH * t.character.height
     for contact, place in zip(t.contacts, motion.places, strict=True):
         body = t.character.bodies[t.points[contact.point].body]
         span = (contact.contact.start, contact.contact.end)
         if contact.track is not None or contact.ride is not None:
             rigid = replace(contact, sole=None)
             place = rigid.holds(np.clip(times, *span)).of(place)
-        yield ContactHold(body.part, place, span, contact.friction is None)
+        below = 0.0 if body.part in FEET else _depth(contact.contact, floor, depth)
+        yield ContactHold(body.part, place, span, contact.friction is None, below)
+
+
+def _depth(contact: Contact, floor: float, most: float) -> float:
+    """How far, m, the point of a hand or a knee is above what it rests on, as recorded."""
+    return float(np.clip(contact.place[2] - floor, 0.0, most))
+
+
+def posts(
+    holds: Iterable[ContactHold], floor: float, times: FloatArray, com: FloatArray
+) -> Iterator[Bar]:
+    """A post from the floor, m, to each hand or knee that rests above it, so that it does not hang
+    in the air; whoever hangs rests on nothing. com: (T, 3) m, at `times` (T,) s."""
+    for hold in holds:
+        top = hold.place - hold.depth * UP
+        body = np.interp(np.mean(hold.span), times, com[:, 2])
+        if not hold.grip and floor + RAISED < top[..., 2].min() and top[..., 2].max() < body:
+            yield Bar(top * [1.0, 1.0, 0.0] + floor * UP, top, POST, hold.span)
 
 
 def bars(holds: Sequence[ContactHold]) -> Iterator[Bar]:

@@ -12,6 +12,7 @@ from hangtime.bridge.picture import cycles, layout
 from hangtime.bridge.picture.annotations import Thing
 from hangtime.bridge.picture.mark_meshes import Look
 from hangtime.bridge.picture.render import draw_sheet
+from hangtime.bridge.picture.scene import Floor, Painter
 from hangtime.bridge.picture.sheet import Limb, SheetRow, View
 from hangtime.solver.data.faults import OutputNotWritable
 
@@ -251,6 +252,20 @@ def test_the_heading_asked_for_runs_to_the_right():
     tier = layout.lay_out([row], View(heading=(1.0, 0.0))).tiers[0]
     aside = tier.path[-1, 1] - tier.path[0, 1]
     assert aside == pytest.approx(np.sin(0.5))
+
+
+@pytest.mark.parametrize("elevation", [15.0, 70.0])
+def test_titles_are_above_all_that_is_drawn(rows, elevation):
+    """From above limbs ran through them that reach away from the viewer."""
+    limb = rows[0].limbs[1]
+    arm = replace(limb, size=limb.size[[0, 2, 1]], centre=limb.centre + np.array([0.0, 0.8, 0.5]))
+    (tier,) = layout.lay_out([replace(rows[0], limbs=(*rows[0].limbs, arm))]).tiers
+    floor = Floor(np.array([-1.0, -0.7, 0.0]), np.array([3.0, 0.7, 0.0]))
+    head = Painter.head(tier, floor, np.radians(elevation))
+    up = np.array([0.0, np.sin(np.radians(elevation)), np.cos(np.radians(elevation))])
+    for figure in tier.figures:
+        hand = figure.centre[2] + arm.size / 2 * [0.0, 1.0, 1.0]
+        assert head > hand @ up - 1e-9
 
 
 def test_the_floor_is_where_the_row_says(rows):

@@ -15,6 +15,7 @@ from hangtime.operators.headless.picture import (
     goes_sideways,
     heading,
     limbs,
+    posts,
     recorded_row,
 )
 from hangtime.solver.analysis.performance import perform
@@ -124,3 +125,19 @@ def test_hands_that_hold_on_are_at_a_bar_and_those_that_lean_on_the_floor_are_no
     assert drawn(grip=False) == []
     (bar,) = drawn(grip=True)
     assert isinstance(bar, Bar)
+
+
+@pytest.mark.parametrize(
+    ("height", "grip", "post"),
+    [(0.2, False, True), (0.07, False, False), (0.2, True, False), (1.5, False, False)],
+)
+def test_hands_that_rest_above_the_floor_have_a_post_below_the_palm(
+    height: float, grip: bool, post: bool
+) -> None:
+    """Raised hands stood on nothing. Above the body they hang."""
+    hold = ContactHold(Part.HAND, np.array([0.3, 0.1, height]), (0.0, 1.0), grip, depth=0.05)
+    times, com = np.array([0.0, 1.0]), np.array([[0.0, 0.0, 0.9]] * 2)
+    drawn = list(posts([hold], 0.0, times, com))
+    assert len(drawn) == post
+    for each in drawn:
+        np.testing.assert_allclose([each.start, each.end], [[0.3, 0.1, 0.0], [0.3, 0.1, 0.15]])
