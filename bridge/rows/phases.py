@@ -6,12 +6,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ...solver.data.contacts import PhaseKind, gaps
+from ...solver.data.reports.report import Report
 from ..hidden_texts import spans_text
 from .choices import HOLD
 from .protocols import ContactRow, Settings
 
 SAME = 1e-3  # frames; single precision keeps frames
-TAKE_OFF = "Take-Off"
+TAKE_OFF, STANCE = "Take-Off", "Stance"
 UNSEEN = spans_text("unseen")
 
 
@@ -111,7 +112,21 @@ def roles(settings: Settings) -> dict[str, str]:
         elif flown:
             found[phase.name] = f"Landing {flown}" if flights > 1 else "Landing"
         else:
-            found[phase.name] = TAKE_OFF if index + 1 < len(every) else "Stance"
+            found[phase.name] = TAKE_OFF if index + 1 < len(every) else STANCE
+    return found
+
+
+def roles_in(settings: Settings, report: Report) -> dict[str, str]:
+    """As `roles`, of a result's stances. Where the fit doubts a flight, the stances beside it are
+    one by the first one's name, which then is neither."""
+    every, found = phases_of(settings), roles(settings)
+    kept = {phase.phase for phase in report.phases}
+    first, last = report.times.recorded_frame[0], report.times.recorded_frame[-1]
+    for index, phase in enumerate(every):
+        inside = first - SAME <= phase.start and phase.end <= last + SAME
+        if not phase.is_ground and inside and phase.name not in kept:
+            beside = every[max(index - 1, 0) : index + 2]
+            found |= {each.name: STANCE for each in beside if each.is_ground}
     return found
 
 

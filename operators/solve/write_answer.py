@@ -34,7 +34,7 @@ from ...bridge.recipe.result import require_return_after
 from ...bridge.repairs.analysed_state import AnalysedState
 from ...bridge.repairs.analysis_key import SAME_RATE
 from ...bridge.rows.choices import After, ContactMarkers, WrittenAs
-from ...bridge.rows.phases import roles
+from ...bridge.rows.phases import roles_in
 from ...bridge.scene.played_end import play_longer
 from ...bridge.takes.plan import AdaptedMotion
 from ...bridge.takes.span import ResultSpan
@@ -178,7 +178,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     action, written = yield from write_adapted_incrementally(armature, motion)
     present(session().solving).written = True
     keep(action, answer.traces, stood)
-    told = take_lines(written, roles(settings_of(armature)))
+    told = take_lines(written, roles_in(settings_of(armature), answer.report))
     if options.written_as is WrittenAs.SLOT and options.markers is ContactMarkers.ACTION:
         told = [*told, MARKERS_LEFT_OUT]
     if options.written_as in (WrittenAs.ACTION, WrittenAs.SLOT):
@@ -361,7 +361,8 @@ def _note(
     told: lines about the rest of the take.
     """
     settings = settings_of(armature)
-    said = summary(answer, roles(settings), retimed_frames(settings, answer.report.times))
+    called = roles_in(settings, answer.report)
+    said = summary(answer, called, retimed_frames(settings, answer.report.times))
     settings.status = "\n".join([said, *told])
     write_status(settings, answer.report)
     action_settings(action).report = "\n".join([as_text(answer.report), *told])

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -11,7 +13,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.properties.stances import active_stance
 from hangtime.bridge.repairs.renamed_bones import dead_bones, renamed_bones, require_keyed
-from hangtime.bridge.rows.phases import roles
+from hangtime.bridge.rows.phases import roles, roles_in
 from hangtime.operators.solve.common import chosen_armature, said
 from hangtime.operators.words.failure_text import failure_of
 from hangtime.solver.data.faults import DeadKeys, NoSolution, RenamedBones, UnseenSupport
@@ -76,6 +78,22 @@ def test_stances_are_called_by_their_roles(analysed: bpy.types.Object) -> None:
     settings.active_stance = 0
     assert settings.contacts[settings.active_contact].phase == "ground 1"
     assert settings.active_stance == 0
+
+
+def test_a_stance_that_a_result_joins_is_neither_take_off_nor_landing(
+    analysed: bpy.types.Object,
+) -> None:
+    """What follows a landing was told to be carried along with the take-off."""
+    settings = analysed.hangtime
+    frames = SimpleNamespace(recorded_frame=(settings.first_frame, settings.last_frame))
+
+    def called(*names: str) -> dict[str, str]:
+        phases = [SimpleNamespace(phase=name) for name in names]
+        report: Any = SimpleNamespace(phases=phases, times=frames)
+        return roles_in(settings, report)
+
+    assert called("ground 1")["ground 1"] == "Stance"
+    assert called("ground 1", "flight 1", "ground 2") == roles(settings)
 
 
 def test_a_keyed_scale_is_scaled_with_its_object(jump: bpy.types.Object) -> None:
