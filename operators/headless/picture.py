@@ -12,13 +12,13 @@ from ...bridge.picture.film import draw_film
 from ...bridge.picture.layout import RAISED, canvas_axes
 from ...bridge.picture.render import draw_sheet
 from ...bridge.picture.sheet import Limb, SheetRow, View
-from ...solver.analysis.performance import PALM_DEPTH
+from ...solver.analysis.performance import above_ground
 from ...solver.analysis.pinned_places import facing
 from ...solver.arrays import FloatArray
 from ...solver.body.anatomy import Part
 from ...solver.body.character import Character
 from ...solver.data.constants import UP
-from ...solver.data.contacts import Contact, Phase, PhaseKind
+from ...solver.data.contacts import Phase, PhaseKind
 from ...solver.data.problem import MotionProblem, OffsetAxes, Pin
 from ...solver.stages.implicit import Adaptation
 from ...solver.transcription.motion import Motion
@@ -90,17 +90,15 @@ def recorded_row(adaptation: Adaptation, marks: Sequence[Mark] = ()) -> SheetRow
     performance, schedule = adaptation.fit.performance, adaptation.fit.schedule
     parts = {body.bone: body.part for body in performance.character.bodies}
     feet = [contact for contact in schedule.contacts if parts[contact.bone] in FEET]
-    depth = PALM_DEPTH * performance.character.height
-    others = [
-        ContactHold(
-            parts[c.bone], c.place, (c.start, c.end), False, _depth(c, schedule.floor_m, depth)
-        )
-        for c in schedule.contacts
-        if c not in feet
+    others = [contact for contact in schedule.contacts if contact not in feet]
+    depths = above_ground(others, performance.character, schedule.floor_m).tolist()
+    held = [
+        ContactHold(parts[c.bone], c.place, (c.start, c.end), False, depth)
+        for c, depth in zip(others, depths, strict=True)
     ]
-    beside = (*(Sphere(hold.place, hold.span) for hold in others), *marks)
+    beside = (*(Sphere(hold.place, hold.span) for hold in held), *marks)
     if not any(isinstance(mark, Thing) for mark in marks):
-        beside += tuple(posts(others, schedule.floor_m, performance.times, performance.com))
+        beside += tuple(posts(held, schedule.floor_m, performance.times, performance.com))
     return SheetRow(
         f"Recording: {performance.recording.name}",
         performance.times,
@@ -157,20 +155,14 @@ class ContactHold:
 def contact_holds(motion: Motion, times: FloatArray, floor: float) -> Iterator[ContactHold]:
     """Every contact of a motion; where it moves, at the instants (T,). floor: m, as recorded."""
     t = motion.transcription
-    depth = PALM_DEPTH * t.character.height
-    for contact, place in zip(t.contacts, motion.places, strict=True):
+    depths = above_ground([each.contact for each in t.contacts], t.character, floor).tolist()
+    for contact, place, depth in zip(t.contacts, motion.places, depths, strict=True):
         body = t.character.bodies[t.points[contact.point].body]
         span = (contact.contact.start, contact.contact.end)
         if contact.track is not None or contact.ride is not None:
             rigid = replace(contact, sole=None)
             place = rigid.holds(np.clip(times, *span)).of(place)
-        below = 0.0 if body.part in FEET else _depth(contact.contact, floor, depth)
-        yield ContactHold(body.part, place, span, contact.friction is None, below)
-
-
-def _depth(contact: Contact, floor: float, most: float) -> float:
-    """How far, m, the point of a hand or a knee is above what it rests on, as recorded."""
-    return float(np.clip(contact.place[2] - floor, 0.0, most))
+        yield ContactHold(body.part, place, span, contact.friction is None, depth)
 
 
 def posts(
