@@ -328,8 +328,6 @@ def _restore(
         row.used = edit.used
         row.start_frame = frame_of(row.found_start, edit.found_start, edit.start_frame)
         row.end_frame = frame_of(row.found_end, edit.found_end, edit.end_frame)
-        if row.phase in settings.stances:
-            settings.stances[row.phase].turned = turns.get(edit.phase, 0.0)
     going = movers(rows, again.contacts)
     for i, edit in going.items():
         move = again.displacement.direction(edit.move)
@@ -338,6 +336,8 @@ def _restore(
         rows[i].on = edit.on
     for i, edit in again.contacts.items():
         rows[i].empty = edit.empty
+        if rows[i].phase in settings.stances:  # whole turns, of which places tell nothing
+            settings.stances[rows[i].phase].turned = turns.get(edit.phase, 0.0)
     for stance in settings.stances:
         remember(settings, stance.name)
     move_empties(settings)

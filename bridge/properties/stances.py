@@ -12,7 +12,7 @@ changes neither.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import atan2, isfinite, tau
+from math import atan2, isfinite, remainder, tau
 
 import bpy
 from mathutils import Matrix, Vector
@@ -27,6 +27,7 @@ from ..rows.protocols import ContactRow, Settings, StanceRow
 
 _SAME = 1e-6  # Blender units
 _DIGITS = 6  # of a turn
+_SAME_TURN = 1e-4  # rad
 _RIGID = 1e-3  # m; contacts that are so far from their stance's move were moved with it
 
 
@@ -291,24 +292,30 @@ def _shift_empty(row: ContactRow, by: Vector) -> None:
 
 
 def remember(settings: Settings, phase: str) -> None:
-    """Keeps a stance's shift and turn to what its contacts' places say: of whole turns, and of any
-    where a single contact tells it, they say nothing."""
+    """Keeps a stance's shift and turn to what its contacts' places say; whole turns, of which they
+    say nothing, as long as they say the same turn as before, and any where a single one counts."""
     stance = settings.stances.get(phase)
     contacts = telling(stance_contacts(settings, phase))
     if stance is None or not contacts:
         return
-    found, now = [c.found_at for c in contacts], [c.at for c in contacts]
-    old, new = _middle(found), _middle(now)
+    old, new = (_middle([getattr(c, at) for c in contacts]) for at in ("found_at", "at"))
     if not all(map(isfinite, new[:])):  # which a solve tells, and Put Back mends
         return
     stance.shifted = _axes(stance).transposed() @ (new - old)
-    if len(contacts) == 1:
-        return
-    arms = [(Vector(a) - old, Vector(b) - new) for a, b in zip(found, now, strict=True)]
+    counted = [contact for contact in contacts if contact.used]
+    if len(counted) > 1:
+        turn = _turn_of(counted)
+        if abs(remainder(stance.turned - turn, tau)) > _SAME_TURN:
+            stance.turned = turn
+
+
+def _turn_of(contacts: Sequence[ContactRow]) -> float:
+    """Rad, about the vertical, that is nearest to how contacts were moved."""
+    old, new = (_middle([getattr(c, at) for c in contacts]) for at in ("found_at", "at"))
+    arms = [(Vector(c.found_at) - old, Vector(c.at) - new) for c in contacts]
     across = sum(a.x * b.y - a.y * b.x for a, b in arms)
     along = sum(a.x * b.x + a.y * b.y for a, b in arms)
-    turn = round(atan2(across, along), _DIGITS)  # places are in single precision
-    stance.turned = turn + tau * round((stance.turned - turn) / tau)
+    return round(atan2(across, along), _DIGITS)  # places are in single precision
 
 
 def _middle(points: Sequence[Sequence[float]]) -> Vector:

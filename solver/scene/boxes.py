@@ -16,7 +16,7 @@ def still_near(
 ) -> list[SceneObject]:
     """Those that stand still and have vertices' boxes nearer than that, m, to that of points (N, 3)
     m, world, on each axis."""
-    still = tuple(thing for thing in scene if not thing.moves)
+    still = tuple(thing for thing in scene if not thing.moves and len(thing.vertices))
     low, high = _boxes(still)
     first, last = points.min(axis=0) - within, points.max(axis=0) + within
     near = ((low < last) & (high > first)).all(axis=1)

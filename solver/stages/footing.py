@@ -58,7 +58,7 @@ def check_sunk(scene: Sequence[SceneObject], schedule: ContactSchedule, footing:
     if not loose:
         return
     places = footing.places[loose]
-    for thing in still_near(scene, places, SHEET):
+    for thing in still_near(scene, places + SUNK * UP, SHEET):
         mesh = placed_mesh(thing)
         deep = mesh.heights(places[:, :2]).z - places[:, 2]
         inside = (mesh.distances(places + SUNK * UP).distance < 0.0) & (deep > SUNK)

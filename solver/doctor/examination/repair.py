@@ -126,22 +126,29 @@ def grounded(
     wanted = [each for each in Mend if each in mend and each in GROUNDING]
     if not wanted or len(recording.frames) < 2:
         return recording
-    height = stature(recording, chosen)  # limits in metres, and gravity, are those of persons
-    size = person_factor(height) if stated is None else stated / height
-    recording = scaled_recording(recording, size)
+    height = stature(recording, chosen)
+    persons = person_factor(height)  # limits in metres are those of persons
     for each in wanted:
-        match each:
-            case Mend.LEVEL_HIPS:
-                recording = with_its_height(recording, chosen)
-                if smoothed_later(mend):
-                    recording = smoothed(recording, figure_of(recording, chosen))
-            case Mend.IN_PLACE:
-                recording = with_its_way(recording, chosen)
-            case Mend.FLOATING:
-                recording = held_to_the_ground(recording, figure_of(recording, chosen))
-            case Mend.SINKING:
-                recording = lifted_out(recording, chosen)
-    return scaled_recording(recording, 1.0 / size)
+        falls = each is Mend.LEVEL_HIPS  # at its own size, whatever a person's is
+        size = stated / height if falls and stated is not None else persons
+        mended = _grounded(scaled_recording(recording, size), each, chosen)
+        recording = scaled_recording(mended, 1.0 / size)
+        if each is Mend.LEVEL_HIPS and smoothed_later(mend):
+            recording = smoothed(recording, figure_of(recording, chosen))
+    return recording
+
+
+def _grounded(recording: Recording, mend: Mend, chosen: Mapping[str, str] | None) -> Recording:
+    match mend:
+        case Mend.LEVEL_HIPS:
+            return with_its_height(recording, chosen)
+        case Mend.IN_PLACE:
+            return with_its_way(recording, chosen)
+        case Mend.FLOATING:
+            return held_to_the_ground(recording, figure_of(recording, chosen))
+        case Mend.SINKING:
+            return lifted_out(recording, chosen)
+    raise ValueError(f"how does {mend.value} move the body?")
 
 
 def _without_drift(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import permutations
+
 import numpy as np
 import pytest
 
@@ -192,6 +194,40 @@ def add_to_landing(settings: bpy.types.PropertyGroup, point: str) -> bpy.types.P
     bpy.context.scene.frame_set(round(landing(settings)[0].start_frame) + 2)
     assert bpy.ops.hangtime.add_contact(point=point) == {"FINISHED"}
     return settings.contacts[settings.active_contact]
+
+
+@pytest.mark.parametrize("degrees", [-165.0, 145.0, -270.0])
+def test_another_analysis_turns_a_stance_no_further(
+    analysed: bpy.types.Object, degrees: float
+) -> None:
+    """Contacts are put back one by one, and half moved they told another winding."""
+    stance = analysed.hangtime.stances["ground 2"]
+    stance.turn, stance.left = np.radians(degrees), 0.3
+    bpy.ops.hangtime.analyze()
+    assert np.degrees(stance.turn) == pytest.approx(degrees, abs=1e-3)
+    assert {round(np.degrees(pin.turn), 2) for pin in pins(analysed).values()} == {degrees}
+
+
+def test_contacts_that_are_moved_one_by_one_wind_nothing(analysed: bpy.types.Object) -> None:
+    settings = analysed.hangtime
+    settings.moves = "CONTACT"
+    moving = landing(settings)
+    for order in permutations(range(len(moving))):
+        for at in order:
+            moving[at].place = np.add(moving[at].found_at, (0.5, 0.0, 0.0))
+        assert settings.stances["ground 2"].turn == pytest.approx(0.0, abs=1e-4)
+        for at in order:
+            moving[at].place = moving[at].found_at
+
+
+def test_contacts_that_do_not_count_tell_no_turn(analysed: bpy.types.Object) -> None:
+    settings = analysed.hangtime
+    settings.moves = "CONTACT"
+    heel, *others = landing(settings)
+    for row in others:
+        row.used = False
+    heel.place = np.add(heel.found_at, (0.2, 0.3, 0.0))
+    assert settings.stances["ground 2"].turn == pytest.approx(0.0, abs=1e-6)
 
 
 def test_a_contact_that_is_added_goes_where_its_stance_was_moved_and_turned(
