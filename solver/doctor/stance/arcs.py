@@ -30,8 +30,7 @@ def with_arcs(above: FloatArray, rate: float) -> FloatArray:
     flies, on a parabola with the speeds of before and after. The parting of a clip into both is the
     one that misses these, and pulls, least, by dynamic programming.
     """
-    legs, stance = _Legs.of(above, rate), max(round(STANCE * rate), 1)
-    stood = np.cumsum(legs.price)
+    legs, stance = _Legs.of(above, rate), max(round(STANCE * rate), 2)
     price, leaving = np.zeros(len(above)), np.zeros(len(above))  # of the ways to there
     arcs = list[_Arc | None]([None] * len(above))
     for frame in range(1, len(above)):
@@ -40,7 +39,8 @@ def with_arcs(above: FloatArray, rate: float) -> FloatArray:
             if (arc := legs.cheapest(flights, price[frame])) is not None:
                 price[frame], arcs[frame] = arc.price, arc
         since = max(frame - stance, 0)
-        leaving[frame] = price[since] + stood[frame] - stood[since]
+        standing = legs.stood[frame] - legs.stood[since] - legs.left(frame)
+        leaving[frame] = price[since] + standing
     heights, frame = above.copy(), len(above) - 1
     arcs[frame] = legs.cheapest(legs.ending_in_air(leaving), price[frame]) or arcs[frame]
     while frame > 0:
@@ -66,13 +66,16 @@ class _Arc:
 @dataclass(frozen=True)
 class _Legs:
     """As far as they hold the centre of mass above the ground, (T,) m, its speeds, m/s, told from
-    before each frame and from after it, and the price of standing there."""
+    before each frame and from after it, and the price of standing there, up to it in all, which is
+    told by so many frames on both sides."""
 
     above: FloatArray
     rate: float
     before: FloatArray
     after: FloatArray
     price: FloatArray
+    stood: FloatArray
+    reach: int
 
     @staticmethod
     def of(above: FloatArray, rate: float) -> _Legs:
@@ -82,7 +85,16 @@ class _Legs:
             acceleration = bent * (rate / reach) ** 2
             beyond = acceleration - np.clip(acceleration, -STANDARD_GRAVITY, HARDEST)
             price[reach:-reach] = STANDING * np.abs(beyond) / rate
-        return _Legs(above, rate, _slopes(above, rate), -_slopes(above[::-1], rate)[::-1], price)
+        before, after = _slopes(above, rate), -_slopes(above[::-1], rate)[::-1]
+        return _Legs(above, rate, before, after, price, np.cumsum(price), reach)
+
+    def left(self, first: int) -> float:
+        """The price of standing that frames seem to have before a flight, by what follows."""
+        return float(self.price[max(first - self.reach + 1, 0) : first + 1].sum())
+
+    def met(self, last: int) -> float:
+        """The same after one, by what was before."""
+        return float(self.price[last + 1 : last + self.reach].sum())
 
     def landing(self, last: int, leaving: FloatArray) -> Iterator[_Arc]:
         """Flights that land at a frame, the cheapest first. leaving: (T,) prices of the ways to
@@ -95,6 +107,7 @@ class _Legs:
         lands = mean - STANDARD_GRAVITY * gained
         missed = np.abs([speeds - self.before[firsts], lands - self.after[last]])
         prices = leaving[firsts] + (missed**2 / (1.0 + missed / ROUGHLY)).sum(axis=0)
+        prices -= self.met(last)
         for i in np.argsort(prices, kind="stable"):
             first = int(firsts[i])
             yield _Arc(first, last, first, float(speeds[i]), float(prices[i]))
@@ -103,7 +116,7 @@ class _Legs:
         """The one from the clip's beginning that lands at a frame."""
         shortest, longest = self._frames
         if shortest <= last <= longest:
-            yield _Arc(0, last, last, float(self.after[last]), OPEN)
+            yield _Arc(0, last, last, float(self.after[last]), OPEN - self.met(last))
 
     def ending_in_air(self, leaving: FloatArray) -> Iterator[_Arc]:
         """Those that go on to the clip's end, likewise."""
