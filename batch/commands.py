@@ -11,7 +11,8 @@ from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 
-from ..operators.headless.explained import CANCELLED, WRONG_INPUT, ended_by_signals, explained
+from ..operators.headless.explained import CANCELLED, WRONG_INPUT, explained
+from ..operators.terminal.interrupts import ended_by_signals
 from ..operators.terminal.outlasting import outlasting
 from ..solver.data.faults import Fault
 from ..solver.numerics.parallel import cores

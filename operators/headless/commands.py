@@ -18,6 +18,7 @@ from ...solver.data.problem import MotionProblem
 from ...solver.doctor.repairs import Repairs
 from ...solver.worker.pipeline import solve
 from ..files.outbox import Outbox, write_new
+from ..terminal.interrupts import ended_by_signals, raise_unheard
 from ..terminal.outlasting import outlasting
 from ..terminal.stages import WIDTH, Stages
 from ..words.analysis_text import analysis_text, starter_recipe
@@ -26,7 +27,7 @@ from .clip import Clip, LoadedClip, load
 from .doctor import examined, told, write_recipe_of
 from .doubts import doubts_about
 from .earlier import clear, listed_files
-from .explained import CANCELLED, FAILED, NO_SOLUTION, WRONG_INPUT, ended_by_signals, explained
+from .explained import CANCELLED, FAILED, NO_SOLUTION, WRONG_INPUT, explained
 from .outputs import Outputs, linked_files, require_exported, require_place
 from .result_files import every_name, others, require_apart, result_lines
 
@@ -215,6 +216,7 @@ def adapt(options: argparse.Namespace) -> None:
 def _delivered(outbox: Outbox, inputs: Iterable[Path]) -> list[str]:
     """The files are in their places, and none that an earlier run wrote is beside them, but for
     what was made from it and for the inputs; lines that tell of it. Raises OutputNotWritable."""
+    raise_unheard()
     listed = listed_files(outbox.folder)
     written = outbox.deliver()
     lines = ["Written:", *(f"  {path}" for path in written)]

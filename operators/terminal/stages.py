@@ -10,6 +10,7 @@ from ...solver.data.reports.report import StageReport
 from ...solver.optimisation.sqp import Step
 from ...solver.transcription.motion import Motion
 from ...solver.worker.stage_clock import StageClock
+from .interrupts import raise_unheard
 
 WIDTH = 24
 
@@ -45,6 +46,7 @@ class Stages(StageClock):
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
+        raise_unheard()
         self._current = StageLine(name, time.monotonic())
         self._show(self._current)
         end = "   failed\n"

@@ -1,12 +1,14 @@
-"""What ends a command of a terminal."""
+"""Signals that end a process politely."""
 
 from __future__ import annotations
 
+import io
 import signal
 from contextlib import suppress
 
 import pytest
-from hangtime.operators.headless.explained import ended_by_signals
+from hangtime.operators.terminal.interrupts import ended_by_signals
+from hangtime.operators.terminal.stages import Stages
 
 pytestmark = pytest.mark.usefixtures("_handlers_stay")
 
@@ -40,6 +42,22 @@ def test_a_signal_interrupts(number: int) -> None:
 def test_a_signal_interrupts_an_operator_of_blender_too(number: int) -> None:
     with pytest.raises(KeyboardInterrupt), ended_by_signals():
         blender_operator(number)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_that_blender_swallows_ends_the_next_stage(number: int) -> None:
+    """As while it saves: what its own calls raise it prints, and goes on."""
+    with pytest.raises(KeyboardInterrupt), ended_by_signals():
+        _saves_and_exports(number)
+    with Stages(io.StringIO()).stage("Another command"):
+        pass
+
+
+def _saves_and_exports(number: int) -> None:
+    with suppress(KeyboardInterrupt):
+        signal.raise_signal(number)
+    with Stages(io.StringIO()).stage("Exporting FBX"):
+        pytest.fail("nothing is exported")
 
 
 def test_what_fails_by_itself_is_no_interrupt() -> None:
