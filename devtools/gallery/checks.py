@@ -87,7 +87,7 @@ class BendCheck(Span):
 @dataclass(frozen=True)
 class ConeCheck(Span):
     """A bone's angle from an axis, rad; frame (3, 3): rows the axis and two cross directions in
-    the parent's rest frame, world axes, the latter divided by stretch (2,)."""
+    the parent's rest frame, world axes, of which the edge is stretch (2,) times as far."""
 
     bone: str
     parent: str
@@ -102,8 +102,10 @@ class ConeCheck(Span):
         at = self.during(shown.times)
         back = np.swapaxes(turns(shown, self.parent)[at], 1, 2)
         local = np.einsum("ij,tjk,tk->ti", self.frame, back, directions(shown, self.bone)[at])
-        across = np.linalg.norm(local[:, 1:] / self.stretch, axis=1)
-        out = np.arctan2(across, local[:, 0]) - self.half_angle
+        across = np.linalg.norm(local[:, 1:], axis=1)
+        narrow = np.linalg.norm(local[:, 1:] / self.stretch, axis=1) / np.maximum(across, 1e-12)
+        edge = np.arctan2(np.sin(self.half_angle), narrow * np.cos(self.half_angle))
+        out = np.arctan2(across, local[:, 0]) - edge
         return float(np.degrees(out.max(initial=0.0)))
 
 

@@ -252,15 +252,16 @@ def narrowing(ways: FloatArray, stretch: FloatArray) -> FloatArray:
     return np.asarray(np.linalg.norm(ways / stretch, axis=1))
 
 
-def edge(narrow: FloatArray, half_angle: float) -> FloatArray:
+def edge(narrow: FloatArray, half_angle: FloatArray | float) -> FloatArray:
     """(U,) rad from the axis to the edge. narrow: (U,) as `narrowing` tells; half_angle: rad, of
-    half a turn and more there is no edge."""
-    if half_angle >= np.pi:
-        return np.full(len(narrow), np.inf)
-    return np.asarray(np.arctan2(np.sin(half_angle), narrow * np.cos(half_angle)))
+    all or of each; of half a turn and more there is no edge."""
+    to_it = np.arctan2(np.sin(half_angle), narrow * np.cos(half_angle))
+    return np.where(np.asarray(half_angle) < np.pi, to_it, np.inf)
 
 
-def beyond_edge(parts: FloatArray, half_angle: float, stretch: FloatArray) -> FloatArray:
+def beyond_edge(
+    parts: FloatArray, half_angle: FloatArray | float, stretch: FloatArray
+) -> FloatArray:
     """(U,) rad by which directions are outside a cone, straight off its axis; below 0 within.
 
     parts: (U, 3) of unit vectors, along the axis and in the two directions across. stretch: (2,).

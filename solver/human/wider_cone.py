@@ -48,7 +48,9 @@ class WiderCone(ConeAngle):
         ahead = (by_pulled * pull)[:, None] * off + around[:, None] * (aside @ self.frame[1:])
         return np.asarray(np.cross(R @ self.along, ahead))
 
-    def past(self, R: FloatArray, lower: float, upper: float) -> FloatArray:
+    def past(
+        self, R: FloatArray, lower: FloatArray | float, upper: FloatArray | float
+    ) -> FloatArray:
         below, above = super().past(R, lower, upper)
         return np.stack([below, above - self.by])
 

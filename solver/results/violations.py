@@ -13,8 +13,7 @@ from ..data.status import Status
 from ..fitting.fit import Fit
 from ..optimisation.guards import Guard, in_the_way
 from ..stages.implicit import Adaptation
-from ..transcription.constraint import Constraint, DenseViolation, dense_violation
-from ..transcription.joint_measures import ConeAngle
+from ..transcription.constraint import DenseViolation, dense_violation
 from ..transcription.motion import Motion
 from .flight_summary import scene_frame
 
@@ -36,29 +35,20 @@ def pins_of_contacts(fit: Fit, problem: MotionProblem) -> dict[str, str]:
 def condition_violations(adaptation: Adaptation) -> list[DenseViolation]:
     """Worst violation of each of the artist's constraints, between the nodes too, and of what the
     motion was, or had to be, guarded from."""
-    asked = [_dense(c, adaptation.motion) for c in adaptation.motion.transcription.constraints]
+    asked = _of_constraints(adaptation.motion)
     return asked + [each for guard in adaptation.setup.guards for each in _of(guard, adaptation)]
-
-
-def _dense(constraint: Constraint, motion: Motion) -> DenseViolation:
-    """A constraint's worst violation; a cone's as an angle in space, as its measure is none where
-    it has a stretch."""
-    t, cone = motion.transcription, constraint.function
-    missed = dense_violation(constraint, t.character, t.basis, t.layout, motion.x)
-    if not isinstance(cone, ConeAngle) or missed.amount == 0.0:
-        return missed
-    when = np.array([missed.time])
-    lower, upper = (float(end[0]) for end in constraint.limits(when))
-    turned = cone.joint.axes.rotation(motion.angles(when)[:, cone.joint.dofs])
-    return replace(missed, amount=max(float(cone.past(turned, lower, upper).max()), 0.0))
 
 
 def _angles_in_space(adaptation: Adaptation) -> list[DenseViolation]:
     """Violations whose rows' values are no angles in space: of cones, and of joints' ranges."""
     motion, human = adaptation.motion, adaptation.setup.human
-    cones = [c for c in motion.transcription.constraints if c.kind is RowKind.CONE]
-    ranges = [] if human is None else human.violations(motion)
-    return [*(_dense(c, motion) for c in cones), *ranges]
+    cones = [each for each in _of_constraints(motion) if each.kind is RowKind.CONE]
+    return cones + ([] if human is None else human.violations(motion))
+
+
+def _of_constraints(motion: Motion) -> list[DenseViolation]:
+    t = motion.transcription
+    return [dense_violation(c, t.character, t.basis, t.layout, motion.x) for c in t.constraints]
 
 
 def _of(guard: Guard, adaptation: Adaptation) -> list[DenseViolation]:

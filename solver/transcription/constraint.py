@@ -14,6 +14,7 @@ from ..arrays import BoolArray, FloatArray, IntArray
 from ..body.character import Character
 from ..data.row_kinds import RowKind
 from ..numerics.splines import SplineBasis
+from .joint_measures import ConeAngle
 from .rows import Layout, Rows, inside, violation
 from .sampling import Instants, MotionFunction, State
 
@@ -218,8 +219,14 @@ class DenseViolation:
 def dense_violation(
     constraint: Constraint, character: Character, basis: SplineBasis, layout: Layout, x: FloatArray
 ) -> DenseViolation:
-    """Largest violation by unknowns x (K, n_block), between the constraint's instants too."""
+    """Largest violation by unknowns x (K, n_block), between the constraint's instants too; of a
+    cone the largest angle in space, which its rows' values are not where it has a stretch."""
     instants, size = _violation_on_grid(constraint, character, basis, layout, x)
+    cone = constraint.function
+    if isinstance(cone, ConeAngle) and size.any():
+        lower, upper = constraint.bounds.at(instants.times)
+        turned = cone.rotations(State(character, layout, instants, x))
+        size = np.maximum(cone.past(turned, lower.ravel(), upper.ravel()).max(axis=0), 0.0)
     worst = int(np.argmax(size))
     time = float(instants.times[worst])
     return DenseViolation(constraint.name, constraint.kind, float(size[worst]), time)

@@ -46,14 +46,20 @@ class JointMeasure(ABC):
     def gradient(self, R: FloatArray) -> FloatArray:
         """(U, 3) by a small turn of the child, in the parent's frame."""
 
-    def past(self, R: FloatArray, lower: float, upper: float) -> FloatArray:
-        """(2, U) rad that rotations (U, 3, 3) are past a lower and an upper end; below 0 within."""
+    def past(
+        self, R: FloatArray, lower: FloatArray | float, upper: FloatArray | float
+    ) -> FloatArray:
+        """(2, U) rad that rotations (U, 3, 3) are past a lower and an upper end, of all or of each;
+        below 0 within."""
         found = self.of(R)
         return np.stack([lower - found, found - upper])
 
+    def rotations(self, state: State) -> FloatArray:
+        """(U, 3, 3) of the joint, child to parent."""
+        return self.joint.axes.rotation(state.angles()[:, self.joint.dofs])
+
     def value(self, state: State) -> FloatArray:
-        turned = self.joint.axes.rotation(state.angles()[:, self.joint.dofs])
-        return self.of(turned)[:, None]
+        return self.of(self.rotations(state))[:, None]
 
     def jacobians(self, state: State) -> list[ChannelJacobian]:
         full = self.by_angles(state.character, state.angles())
@@ -140,7 +146,9 @@ class ConeAngle(JointMeasure):
         towards = parts[:, :1] * outward - across[:, None] * shape[0]
         return np.asarray(np.cross(direction, towards) / (across**2 + parts[:, 0] ** 2)[:, None])
 
-    def past(self, R: FloatArray, lower: float, upper: float) -> FloatArray:
+    def past(
+        self, R: FloatArray, lower: FloatArray | float, upper: FloatArray | float
+    ) -> FloatArray:
         """An angle in space at the upper end, straight off the axis; a cone has no lower one."""
         below = lower - self.of(R)
         return np.stack([below, beyond_edge(self._parts(R), upper, self.stretch)])

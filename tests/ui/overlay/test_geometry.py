@@ -7,6 +7,7 @@ from math import pi
 import numpy as np
 import pytest
 from hangtime.bridge.shapes.limits import cone_rim
+from hangtime.solver.body.human_limits import edge
 from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.ui.overlay.geometry import arcs, shapes, solids, wires
 from hangtime.ui.overlay.geometry.body_rotations import TracedFigure, body_turns, posed, shortest
@@ -121,7 +122,7 @@ def test_merged_shapes_keep_their_faces_and_lie_row_by_row() -> None:
 
 
 def test_a_stretched_cones_rim_is_where_the_solver_bounds_it() -> None:
-    """By the measure of joints, every point of the rim leans by the half angle."""
+    """Every point of the rim is on the edge, at the angle off the axis that is told."""
     rim = cone_rim(0.6, (2.0, 0.5), 1.0, 32)[:-1]
     count = len(rim)
     along = np.tile(X, (count, 1))
@@ -129,7 +130,8 @@ def test_a_stretched_cones_rim_is_where_the_solver_bounds_it() -> None:
     still = np.tile(np.eye(3), (count, 1, 1))
     joints = Joints(np.zeros((count, 3)), still, owns, along)
     seen = cones(joints, along, np.tile(Y, (count, 1)), np.tile((2.0, 0.5), (count, 1)))
-    np.testing.assert_allclose(seen.now, 0.6, atol=1e-6)
+    np.testing.assert_allclose(seen.now, edge(seen.narrow, 0.6), atol=1e-6)
+    np.testing.assert_allclose(np.cos(seen.now), rim @ X / np.linalg.norm(rim, axis=1), atol=1e-6)
 
 
 def test_an_arc_ends_at_its_limits() -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from ....bridge.shapes.limits import directions
 from ....bridge.shapes.vectors import across, cross, unit
 from ....solver.arrays import FloatArray
+from ....solver.body.human_limits import narrowing, off_axis
 
 SURE = 0.7  # cosine up to which the bend that is seen may differ from the one expected
 BENT = 0.15  # sine of the bend from which on its direction is seen
@@ -37,13 +38,15 @@ class Joints:
 class LimitFrames:
     """Axes of limits and the angles measured in them: columns (N, 3, 3), origins (N, 3), now (N,).
 
-    hands: (N, 3) unit vectors that show the angles, like a clock's hand.
+    hands: (N, 3) unit vectors that show the angles, like a clock's hand. narrow: (N,) by what the
+    tangent of a cone's half angle is divided the way that the bone leans.
     """
 
     axes: FloatArray
     origins: FloatArray
     now: FloatArray
     hands: FloatArray
+    narrow: FloatArray
 
 
 def turned(rotations: FloatArray, vectors: FloatArray) -> FloatArray:
@@ -58,14 +61,14 @@ def rotations(matrices: FloatArray) -> FloatArray:
 
 
 def cones(joints: Joints, axis: FloatArray, side: FloatArray, stretch: FloatArray) -> LimitFrames:
-    """Cones about axes (N, 3) in their parents' rest frames; the solver's measure of the lean.
+    """Cones about axes (N, 3) in their parents' rest frames, and the angles off these.
 
     side: (N, 3) at right angles to them, along which the cones are stretch[:, 0] times as wide.
     """
     axes = _columns(turned(joints.turns, axis), turned(joints.turns, side))
     parts = turned(np.swapaxes(axes, 1, 2), joints.ahead)
-    out = np.hypot(parts[:, 1] / stretch[:, 0], parts[:, 2] / stretch[:, 1])
-    return LimitFrames(axes, joints.heads, np.arctan2(out, parts[:, 0]), joints.ahead)
+    now, ways = off_axis(parts)
+    return LimitFrames(axes, joints.heads, now, joints.ahead, narrowing(ways, stretch))
 
 
 def bends(joints: Joints, straight: FloatArray, flexion: FloatArray) -> LimitFrames:
@@ -86,7 +89,8 @@ def bends(joints: Joints, straight: FloatArray, flexion: FloatArray) -> LimitFra
     towards = np.where(np.isnan(expected), shown, towards)
     now = np.arctan2((ahead * towards).sum(axis=1), (ahead * zero).sum(axis=1))
     axes = _columns(zero, towards)
-    return LimitFrames(axes, joints.heads, now, turned(axes, directions(now)))
+    hands = turned(axes, directions(now))
+    return LimitFrames(axes, joints.heads, now, hands, np.ones(len(now)))
 
 
 def twists(joints: Joints, at: FloatArray) -> LimitFrames:
@@ -107,7 +111,8 @@ def twists(joints: Joints, at: FloatArray) -> LimitFrames:
     zero, quarter = c * one - s * other, s * one + c * other
     ahead = joints.ahead
     axes = np.stack([turned(joints.owns, zero), turned(joints.owns, quarter), ahead], axis=2)
-    return LimitFrames(axes, joints.heads + at[:, None] * ahead, now, turned(axes, directions(now)))
+    origins, hands = joints.heads + at[:, None] * ahead, turned(axes, directions(now))
+    return LimitFrames(axes, origins, now, hands, np.ones(len(now)))
 
 
 def _columns(one: FloatArray, two: FloatArray) -> FloatArray:

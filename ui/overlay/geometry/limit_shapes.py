@@ -12,6 +12,7 @@ from ....bridge.constraint_kinds import cone, joint_limit, twist_limit
 from ....bridge.rows.times import Frames
 from ....bridge.shapes.vectors import across, unit
 from ....solver.arrays import FloatArray
+from ....solver.body.human_limits import edge
 from ...drawing.sketch import Colour
 from . import arcs, limit_poses, palette
 from .body_rotations import TracedFigure
@@ -182,7 +183,7 @@ def _present(limits: Sequence[Limit], measured: limit_poses.LimitFrames) -> Iter
     for look in (Look.THIN, Look.BOLD):
         pairs, colours = [], []
         for k, limit in enumerate(limits):
-            missed = _missed(limit, float(measured.now[k]))
+            missed = _missed(limit, measured, k)
             if limit.standing is not Standing.NOW or (look is Look.BOLD) != missed:
                 continue
             tip = measured.origins[k] + HAND * _reach(limit) * measured.hands[k]
@@ -194,9 +195,12 @@ def _present(limits: Sequence[Limit], measured: limit_poses.LimitFrames) -> Iter
             yield lines(pairs, colours, look)
 
 
-def _missed(limit: Limit, now: float) -> bool:
+def _missed(limit: Limit, measured: limit_poses.LimitFrames, k: int) -> bool:
+    now, upper = float(measured.now[k]), limit.upper
+    if limit.kind == CONE and upper is not None:
+        upper = float(edge(measured.narrow[k : k + 1], upper)[0])
     short = limit.lower is not None and now < limit.lower - BEYOND
-    return short or (limit.upper is not None and now > limit.upper + BEYOND)
+    return short or (upper is not None and now > upper + BEYOND)
 
 
 def _reach(limit: Limit) -> float:
