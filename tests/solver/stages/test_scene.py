@@ -1,5 +1,7 @@
 """Hops in a scene: onto a crate and a slope, and onto what friction does not hold."""
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 from hangtime.solver.analysis.landing import Footing
@@ -134,6 +136,16 @@ def test_a_stance_in_a_crate_is_told_by_its_contact() -> None:
 @pytest.mark.parametrize("height", [0.0, 0.02])
 def test_a_floor_a_little_off_is_none_to_stand_in(height: float) -> None:
     check_sunk((stood(height, (9.0, 9.0, 1.0)),), fitted_hop().schedule, recorded_footing())
+
+
+@pytest.mark.parametrize(("height", "sunk"), [(0.31, True), (0.35, False)])
+def test_who_is_below_a_sheet_is_in_it_as_far_down_as_it_goes(height: float, *, sunk: bool) -> None:
+    """Looked at is the place a little above, so that what is near is near that."""
+    corners = np.array([[-9.0, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]])
+    floor = fitted_hop().schedule.floor_m
+    sheet = thing("Sheet", (corners, np.array([[0, 1, 2], [0, 2, 3]])), (0.0, 0.0, floor + height))
+    with pytest.raises(StandsBelow) if sunk else nullcontext():
+        check_sunk((sheet,), fitted_hop().schedule, recorded_footing())
 
 
 def recorded_footing() -> Footing:
