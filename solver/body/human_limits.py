@@ -255,7 +255,8 @@ def narrowing(ways: FloatArray, stretch: FloatArray) -> FloatArray:
 def edge(narrow: FloatArray, half_angle: FloatArray | float) -> FloatArray:
     """(U,) rad from the axis to the edge. narrow: (U,) as `narrowing` tells; half_angle: rad, of
     all or of each; of half a turn and more there is no edge."""
-    to_it = np.arctan2(np.sin(half_angle), narrow * np.cos(half_angle))
+    bounded = np.minimum(half_angle, np.pi)
+    to_it = np.arctan2(np.sin(bounded), narrow * np.cos(bounded))
     return np.where(np.asarray(half_angle) < np.pi, to_it, np.inf)
 
 

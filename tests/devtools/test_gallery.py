@@ -68,7 +68,7 @@ def cone(half_angle: float) -> ConeCheck:
         (bend(-0.6, 0.4), math.degrees(0.1)),
         (bend(0.0, math.inf), 0.0),
         (bend(-math.inf, -0.1), math.degrees(0.6)),
-        (cone(0.2), math.degrees(math.atan(math.tan(0.5) / 2.0) - 0.2)),
+        (cone(0.2), math.degrees(0.5 - math.atan(2.0 * math.tan(0.2)))),
         (cone(0.3), 0.0),
     ],
 )

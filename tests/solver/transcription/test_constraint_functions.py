@@ -133,6 +133,7 @@ def test_how_far_a_bone_is_past_a_stretched_cone_is_an_angle_in_space(
     edge = np.arctan(stretch * np.tan(half))
     past = cone.past(axis_rotation(axis, bent)[None], -np.inf, half)[1]
     assert past == pytest.approx(bent - edge)
+    assert cone.past(np.eye(3)[None], -np.inf, np.inf)[1] == -np.inf
 
 
 @given(ANGLE, SWING, SWING)
