@@ -24,12 +24,8 @@ def belt_speed(times: FloatArray, points: Mapping[str, ContactPoint]) -> float |
             velocity = np.gradient(point.track[:, :2], times, axis=0)
             # Feet that were locked to a floor are at one height throughout: none would be below it.
             slides.append(velocity[height <= np.percentile(height, LOW_SHARE)])
-    return steady_speed(np.concatenate(slides))
-
-
-def steady_speed(velocities: FloatArray) -> float | None:
-    """M/s, of most of (N, 2) velocities along the floor; None where they differ, or are slow."""
-    steady = np.median(velocities, axis=0)
+    slide = np.concatenate(slides)
+    steady = np.median(slide, axis=0)
     speed = float(np.linalg.norm(steady))
-    apart = float(np.median(np.linalg.norm(velocities - steady, axis=1)))
+    apart = float(np.median(np.linalg.norm(slide - steady, axis=1)))
     return speed if speed > MIN_SPEED and apart < STEADY * speed else None

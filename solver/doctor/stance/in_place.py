@@ -14,11 +14,12 @@ from ...body.character import build_character
 from ...data.problem import Mend
 from ...data.recording import Recording
 from ...numerics.runs import runs
-from ...scene.belt import belt_speed, steady_speed
+from ...scene.belt import MIN_SPEED, STEADY, belt_speed
 from ..falls import in_the_air
 from ..finding import Finding, FindingKind
 from ..local_poses import spans
 from ..repairs import Repairs
+from .flat_feet import agreed
 from .footing import DRIFT, LEAST_STANDING, LowestPoint, standing
 
 KEPT = 0.005  # m along the way, by which hips that keep their place leave it; nobody's stay so
@@ -42,18 +43,23 @@ def find_in_place(performance: Performance) -> Finding | None:
     if far < LEAST_WAY:
         return None
     left = float(np.ptp(performance.centres[:, 0, :2] @ (way / far)))
-    by_toes = belt_speed(performance.times, contact_points(performance)[0])
-    steady = by_toes is not None or steady_speed(stood.velocities[:, :2]) is not None
+    middle, differ = agreed(stood.velocities[:, :2])
+    speed = float(np.linalg.norm(middle))
+    # What flies low seems to stand where heights are reckoned, but most that stands does so.
+    mostly = speed > MIN_SPEED and differ < STEADY * speed
+    by_toes = belt_speed(performance.times, contact_points(performance)[0]) is not None
+    steady = by_toes or mostly
     speeds = np.linalg.norm(stood.velocities[:, :2], axis=1)
     slides = speeds > DRIFT
     if left > max(KEPT, KEPT_SHARE * far if steady else 0.0) or not slides.any():
         return None
-    x, y = np.median(stood.velocities[:, :2], axis=0).tolist()
+    x, y = (np.median(stood.velocities[:, :2], axis=0) if by_toes else middle).tolist()
     remedy = Repairs(drift=(x, y)) if steady else Repairs(mend=(Mend.IN_PLACE,))
     sliding = np.isin(performance.times, stood.times[slides])
     places = spans(performance.recording, _joined(sliding, performance.recording.rate))
-    speed = float(np.median(speeds[slides]))
-    return Finding(FindingKind.IN_PLACE, speed, "m/s", places, remedy=remedy)
+    return Finding(
+        FindingKind.IN_PLACE, float(np.median(speeds[slides])), "m/s", places, remedy=remedy
+    )
 
 
 def _joined(sliding: BoolArray, rate: float) -> BoolArray:
