@@ -20,7 +20,7 @@ from hangtime.solver.doctor.stance.arcs import UNDER, with_arcs
 from hangtime.solver.doctor.stance.level_hips import find_level_hips
 from hangtime.tests.helpers.clips import JUMP, load_recording
 from hangtime.tests.helpers.doctored import figure, jump
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 RATE = 120.0
@@ -45,12 +45,14 @@ def bent(recording: Recording, original: Recording) -> float:
     return float(np.sqrt(np.mean(((off - off[..., 2].mean() * UP) ** 2).sum(axis=2))))
 
 
+@settings(max_examples=25)
 @given(st.floats(1.0, 4.0))
 def test_who_pushes_off_flies_as_high_as_the_speed_carries(speed: float) -> None:
     above, truth = vertical_jump(speed)
     assert with_arcs(above, RATE) == pytest.approx(truth, abs=0.02 * speed)
 
 
+@settings(max_examples=25)
 @given(st.integers(0, 1000))
 def test_nobody_is_lower_than_the_legs_allow_or_falls_faster_than_gravity(seed: int) -> None:
     """Within a flight; where legs would have to pull it is one."""
@@ -71,7 +73,12 @@ def test_who_stands_or_bends_the_knees_stays_on_the_ground(height: float) -> Non
 
 
 @pytest.mark.parametrize(
-    ("name", "left"), [(JUMP, 0.1), ("hops_in_place.bvh", 0.25), ("run_2.bvh", 0.65)]
+    ("name", "left"),
+    [
+        (JUMP, 0.1),
+        pytest.param("hops_in_place.bvh", 0.25, marks=pytest.mark.slow),
+        pytest.param("run_2.bvh", 0.65, marks=pytest.mark.slow),
+    ],
 )
 def test_hips_whose_height_was_left_out_get_it_back(name: str, left: float) -> None:
     """A run's short flights tell less of it."""
@@ -85,7 +92,12 @@ def test_hips_whose_height_was_left_out_get_it_back(name: str, left: float) -> N
 
 
 @pytest.mark.parametrize(
-    "name", [JUMP, pytest.param("131_03_hop.bvh", marks=pytest.mark.slow), "run_2.bvh"]
+    "name",
+    [
+        JUMP,
+        pytest.param("131_03_hop.bvh", marks=pytest.mark.slow),
+        pytest.param("run_2.bvh", marks=pytest.mark.slow),
+    ],
 )
 def test_capture_that_tells_all_from_the_hips_gets_height_and_way_back(name: str) -> None:
     original = load_recording(name)
