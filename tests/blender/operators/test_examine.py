@@ -593,3 +593,29 @@ def test_a_length_is_told_by_the_bone_whose_keys_change_it(
     assert bpy.ops.hangtime.examine() == {"FINISHED"}
     found = {row.name: finding_of(row) for row in findings(jump.hangtime)}
     assert found["bone length"].part == bone
+
+
+@pytest.mark.slow
+def test_hips_that_keep_one_place_get_height_and_way_back_and_are_adapted(
+    jump: bpy.types.Object,
+) -> None:
+    """As capture by video has them that tells all places from the hips."""
+    recorded = read_recorded(jump, *JUMP_FRAMES).heads[:, 0]
+    hips = jump.pose.bones[0].name
+    for curve in curves_of(jump):
+        if curve.data_path == f'pose.bones["{hips}"].location':
+            for key in curve.keyframe_points:
+                key.co[1] = 0.0
+            curve.update()
+    before = keys_digest(action := jump.animation_data.action)
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    assert {"level hips", "in place"} <= set(kinds(jump))
+    assert bpy.ops.hangtime.repair_all() == {"FINISHED"}
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    assert keys_digest(action) == before
+    adapted = read_recording(jump).heads[:, 0]
+    assert [each.name for each in jump.hangtime.stances] == ["ground 1", "ground 2"]
+    assert np.ptp(adapted[:, 2]) == pytest.approx(np.ptp(recorded[:, 2]), rel=0.1)
+    way, wanted = (np.linalg.norm((each[-1] - each[0])[:2]) for each in (adapted, recorded))
+    assert way == pytest.approx(wanted, rel=0.3)
