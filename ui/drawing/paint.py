@@ -9,9 +9,9 @@ import bpy
 import gpu
 import numpy as np
 
-from ...bridge.plots.screen import Array
+from ...bridge.plots.screen import Array, Rect
 from . import batches
-from .sketch import Drawing, Text
+from .sketch import Drawing, Sketch, Text
 
 FONT_ID = 0  # Blender's own font
 CACHED_DRAWINGS = 8  # a few regions of different sizes
@@ -41,6 +41,14 @@ def upload(drawing: Drawing) -> DrawingBatches:
 def _batch(shader: str, corners: Array, colours: Array) -> gpu.types.GPUBatch | None:
     flat = np.zeros((len(corners), 1), np.float32)
     return batches.batch(shader, np.hstack([corners, flat]), colours) if len(corners) else None
+
+
+def compile_shaders(region: bpy.types.Region) -> None:
+    """Draws what nobody sees with each shader: drivers compile one when it first draws."""
+    sketch, nowhere, clear = Sketch(), Rect(0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)
+    sketch.area(nowhere, clear)
+    sketch.outline(nowhere, clear)
+    paint(upload(sketch.finished()), region, width=1.0)
 
 
 def paint(

@@ -36,10 +36,14 @@ class BarOverlay:
 
     def __init__(self) -> None:
         self._drawings = ContentCache[paint.DrawingBatches](paint.CACHED_DRAWINGS)
+        self._compiled = False
 
     def draw(self) -> None:
         """Called by Blender for each timeline and dope sheet."""
         context = bpy.context
+        if not self._compiled:  # beforehand, as what first shows bars has enough to do
+            paint.compile_shaders(present(context.region))
+            self._compiled = True
         bars = bars_in(context)
         if bars is None:
             return
