@@ -14,7 +14,7 @@ from ...solver.data.faults import MissingPart, SeveralTakes
 from ..accessors import present
 from ..files.data_blocks import data_blocks, remove_added, scene_restored
 from ..recipe.export import ExportOptions
-from ..rows.choices import FileFormat, RootMotion
+from ..rows.choices import FileFormat
 from .baked_rig import bake
 from .engines import CONVENTIONS, format_of
 from .placed_takes import frames_of, outline_for, place_takes
@@ -34,16 +34,16 @@ def export_takes(
 ) -> Skin:
     """Write an armature with these takes alone, a key on every frame, each under its action's name.
 
-    pelvis: the bone; needed where something else is to carry the way. Folders are made where
-    missing. The scene is left as it was. A single take keeps its frames where the file is for no
-    engine, as long as none is below 0, where files have none; others begin at 0 s. Returns the
-    skin, whose meshes are in the file. Raises OutputNotWritable, MissingPart, SeveralTakes (a USD
-    file holds one), SameUsdNames.
+    pelvis: the bone; needed where something else carries the way, or takes begin at the origin.
+    Folders are made where missing. The scene is left as it was. A single take keeps its frames
+    where the file is for no engine, as long as none is below 0, where files have none; others begin
+    at 0 s. Returns the skin, whose meshes are in the file. Raises OutputNotWritable, MissingPart,
+    SeveralTakes (a USD file holds one), SameUsdNames.
     """
     form = format_of(options)
     if form is FileFormat.USD and len(takes) > 1:
         raise SeveralTakes(tuple(take.name for take in takes))
-    if pelvis is None and options.root is not RootMotion.AS_IT_IS:
+    if pelvis is None and options.needs_pelvis:
         raise MissingPart("pelvis")
     alone = len(takes) == 1 and not CONVENTIONS[options.engine].clean
     keeps = alone and frames_of(takes[0])[0] >= 0

@@ -49,6 +49,17 @@ class _Space:
     placed: FloatArray
 
 
+@dataclass(frozen=True)
+class _Going:
+    """How the figure goes over the floor. pelvis: the bone. path (T, 4, 4): moves of the figure, in
+    the world. rest (4, 4): of the pelvis there. root_rests: a root bone does not go along."""
+
+    pelvis: str
+    path: FloatArray
+    rest: FloatArray
+    root_rests: bool
+
+
 def place_takes(
     armature: bpy.types.Object,
     takes: Sequence[bpy.types.Action],
@@ -60,7 +71,7 @@ def place_takes(
 ) -> PlacedTakes:
     """Evaluate takes and put them where the file has them; otherwise they begin at frame 0. shaped:
     meshes whose shape keys go along."""
-    convention, carries = CONVENTIONS[options.engine], options.root is RootMotion.ROOT_BONE
+    convention = CONVENTIONS[options.engine]
     found = outline_for(armature, options, pelvis)
     performed_takes = [_performed(armature, take, shaped) for take in takes]
     poses = [performed for performed, _ in performed_takes]
@@ -70,16 +81,13 @@ def place_takes(
     baked = []
     for take, (performed, shapes) in zip(takes, performed_takes, strict=True):
         placed = _placed(performed, found, made, space)
-        if pelvis is not None and options.root is not RootMotion.AS_IT_IS:
+        if pelvis is not None and options.needs_pelvis:
             rest = space.at_rest @ np.array(armature_data(armature).bones[pelvis].matrix_local)
             hips = performed.matrices[:, performed.bones.index(pelvis)]
             path = way(performed.object_to_world @ hips, rest, steady=take.use_cyclic)
-            if carries:
-                placed = _carried(placed, found, made, pelvis, _in_file(path, space))
-            else:
-                rests = not _root_travels(performed, found, pelvis)
-                path = _in_file(without_turns(path, rest), space)
-                placed = _left_out(placed, found, made, pelvis, path, root_rests=rests)
+            rests = not _root_travels(performed, found, pelvis)
+            going = _Going(pelvis, path, rest, root_rests=rests)
+            placed = _travelling(placed, found, made, space, going, options)
         name = _called(take.name, convention.loop if take.use_cyclic else "")
         first = frames_of(take)[0] if keeps_frames else 0
         baked.append(BakedTake(name, first, placed, shapes))
@@ -113,34 +121,36 @@ def _placed(performed: Poses, found: Outline, made: Skeleton, space: _Space) -> 
 
 
 def _in_file(path: FloatArray, space: _Space) -> FloatArray:
-    """Moves in the world (T, 4, 4) as moves in the file."""
+    """Moves in the world (..., 4, 4) as moves in the file."""
     return np.asarray(space.to_file @ path @ np.linalg.inv(space.to_file))
 
 
-def _carried(
-    poses: FloatArray, found: Outline, made: Skeleton, pelvis: str, path: FloatArray
-) -> FloatArray:
-    """Poses (T, B, 4, 4) with the root bone on the way `path` (T, 4, 4)."""
-    assert found.root is not None
-    return with_root(poses, found, made.rest, pelvis, path @ made.rest[found.root])
-
-
-def _left_out(
+def _travelling(
     poses: FloatArray,
     found: Outline,
     made: Skeleton,
-    pelvis: str,
-    path: FloatArray,
-    *,
-    root_rests: bool,
+    space: _Space,
+    going: _Going,
+    options: ExportOptions,
 ) -> FloatArray:
-    """Poses (T, B, 4, 4) without the way `path` (T, 4, 4). A root bone that did not go along is at
-    rest, under the hips."""
-    left = np.linalg.inv(path)[:, None] @ poses
-    if found.root is None or not root_rests:
-        return left
-    still = np.tile(made.rest[found.root], (len(poses), 1, 1))
-    return with_root(left, found, made.rest, pelvis, still)
+    """Poses (T, B, 4, 4) whose way begins where, and is carried by what, the options say. A root
+    bone that does not go along is at rest, under the hips."""
+    path = going.path
+    if options.at_origin:
+        start = np.linalg.inv(path[0])
+        poses, path = _in_file(start, space) @ poses, start @ path
+    if options.root is RootMotion.IN_PLACE:
+        left = _in_file(without_turns(path, going.rest), space)
+        poses = np.linalg.inv(left)[:, None] @ poses
+    if found.root is None:
+        return poses
+    rest = made.rest[found.root]
+    if options.root is RootMotion.ROOT_BONE:
+        return with_root(poses, found, made.rest, going.pelvis, _in_file(path, space) @ rest)
+    if going.root_rests:
+        still = np.tile(rest, (len(poses), 1, 1))
+        return with_root(poses, found, made.rest, going.pelvis, still)
+    return poses
 
 
 def _root_travels(performed: Poses, found: Outline, pelvis: str) -> bool:

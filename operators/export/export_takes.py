@@ -26,6 +26,7 @@ from ..solve.common import (
 )
 from ..solve.results import performer_of, required_result
 from .skin_text import skin_text
+from .take_files import take_files
 
 NO_NAME = "no file name is given"
 NOT_ACCEPTED = "Accept a result first; what is exported are accepted results"
@@ -34,6 +35,7 @@ SCENE_LINKED = (
     "link the character into a scene of this one"
 )
 SHOWN_NOT_ACCEPTED = "The result that is shown is not accepted; accept it, or choose All Accepted"
+NONE_ITS_OWN = "No accepted result is {}'s, which performs the one that is shown; show one"
 LEFT_OUT = "; left out, as another armature performs them: {}"
 UNPHYSICAL = "; {}: {}"
 RENAMED = "; USD names have letters and digits alone, so {} bones are called otherwise in it"
@@ -63,6 +65,12 @@ ROOTS = (
 TAKES = (
     ("SHOWN", "This Result", "The result that is shown"),
     ("ACCEPTED", "All Accepted", "Every result with a tick, each as a take of its own"),
+    (
+        "FILES",
+        "A File for Each",
+        "Every result with a tick, each in a file of its own that is called after it. Files that "
+        "are there under these names are replaced",
+    ),
 )
 
 
@@ -89,6 +97,11 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
     skin: bpy.props.BoolProperty(
         name="Skin", description="Write the meshes that the bones deform, too"
     )
+    at_origin: bpy.props.BoolProperty(
+        name="Begin at Origin",
+        description="Takes begin where the figure stands at rest, facing as it does there: moved "
+        "and turned on the floor as wholes",
+    )
 
     @classmethod
     def obstacle(cls, context: bpy.types.Context) -> str | None:
@@ -104,7 +117,7 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         folder = Path(bpy.data.filepath).parent if bpy.data.filepath else Path.home()
-        name = bpy.path.clean_name(required_result(context).name)
+        name = _default_name(context, self.takes)
         self.filepath = str(folder / f"{name}{ENDINGS[format_of(self._options())]}")
         present(context.window_manager).fileselect_add(self)
         return {"RUNNING_MODAL"}
@@ -113,16 +126,18 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
         layout = present(self.layout)
         layout.use_property_split = True
         layout.use_property_decorate = False
-        for name in ("engine", "format", "takes", "root", "skin"):
+        for name in ("engine", "format", "takes", "root", "at_origin", "skin"):
             layout.prop(self, name)
 
-    def check(self, _context: bpy.types.Context) -> bool:
-        """Let the name end as the chosen format's files do."""
+    def check(self, context: bpy.types.Context) -> bool:
+        """Let the name end as the chosen format's files do, and a name of ours fit the choice."""
         if not bpy.path.basename(self.filepath):  # a folder's name is not to end so
             return False
         path = Path(self.filepath)
-        known = path.suffix.lower() in ENDINGS.values()
-        wanted = str(path.with_suffix("") if known else path) + ENDINGS[format_of(self._options())]
+        path = path.with_suffix("") if path.suffix.lower() in ENDINGS.values() else path
+        if path.name in {_default_name(context, takes) for takes in ("SHOWN", "FILES")}:
+            path = path.with_name(_default_name(context, self.takes))
+        wanted = f"{path}{ENDINGS[format_of(self._options())]}"
         changed = bool(wanted != self.filepath)
         self.filepath = wanted
         return changed
@@ -137,15 +152,21 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
         chosen = [shown] if self.takes == "SHOWN" else accepted
         performer = performer_of(armature)
         taken = [take for take in chosen if _performer(take, armature) == performer]
+        if not taken:
+            return self.refuse(NONE_ITS_OWN.format(performer.name))
         for take in taken:
             bake_shown(performer, take)
         options = self._options(bpy.path.abspath(self.filepath))
         ending = ENDINGS[format_of(options)]
-        path = bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ending)
-        skin = export_takes(performer, taken, path, options, _pelvis(armature, performer))
+        path = Path(bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ending))
+        files = {path: taken}
+        if self.takes == "FILES":
+            files = {file: [take] for file, take in take_files(path, taken, options.engine).items()}
+        for file, held in files.items():
+            skin = export_takes(performer, held, file, options, _pelvis(armature, performer))
         left_out = [take.name for take in chosen if take not in taken]
         since = {take.name: unphysical_since(armature, take) for take in taken}
-        said = Path(path).name + (skin_text(skin) if options.skin else "")
+        said = ", ".join(file.name for file in files) + (skin_text(skin) if options.skin else "")
         self._tell(performer, said, options, left_out, since)
         return {"FINISHED"}
 
@@ -153,7 +174,8 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
         """As chosen; without a choice the format that a path's ending tells, else the engine's."""
         told = next((form for form, ending in ENDINGS.items() if path.endswith(ending)), None)
         form = told if self.format == "BEST" else FileFormat[self.format]
-        return ExportOptions(Engine[self.engine], form, RootMotion[self.root], self.skin)
+        root = RootMotion[self.root]
+        return ExportOptions(Engine[self.engine], form, root, self.skin, self.at_origin)
 
     def _tell(
         self,
@@ -171,6 +193,12 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
             said += RENAMED.format(len(renamed)) if renamed else ""
         said += "".join(UNPHYSICAL.format(take, why) for take, why in unphysical.items() if why)
         self.report({"WARNING"} if any(unphysical.values()) else {"INFO"}, said)
+
+
+def _default_name(context: bpy.types.Context, takes: str) -> str:
+    """Of a file: the shown result's; the armature's where takes get names of their own after it."""
+    each = takes == "FILES"
+    return bpy.path.clean_name((required_armature if each else required_result)(context).name)
 
 
 def _accepted(armature: bpy.types.Object) -> list[bpy.types.Action]:

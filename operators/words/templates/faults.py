@@ -335,7 +335,7 @@ FAULTS: dict[type[Fault], str | tuple[str, ...]] = {
     faults.SameUsdNames: "“{first_bone}” and “{second_bone}” would be one name in a USD file, "
     "which has letters, digits and underscores alone; rename one, or export as FBX or glTF.",
     faults.SeveralTakes: "A USD file holds one take, and several are chosen ({takes:names}); "
-    "export them one by one, or all together as FBX or glTF.",
+    "export a file for each, or all together as FBX or glTF.",
     faults.CrossedBounds: "“{request}” asks for at least {at_least:.4g} {unit} and at most "
     "{at_most:.4g} {unit}, which nothing is; raise the one or lower the other.",
     faults.AsksNothing: "“{request}” asks for nothing; switch on one of its options, or it off.",

@@ -90,11 +90,11 @@ def walking() -> bpy.types.Object:
     return armature
 
 
-def walked(root: RootMotion, path: Path) -> tuple[Recording, Recording]:
+def walked(root: RootMotion, path: Path, *, at_origin: bool = False) -> tuple[Recording, Recording]:
     """The figure as Blender shows it and as the file has it."""
     armature = walking()
     shown = record(armature, np.arange(1.0, 11.0))
-    options = ExportOptions(Engine.UNREAL, root=root)
+    options = ExportOptions(Engine.UNREAL, root=root, at_origin=at_origin)
     export_takes(armature, [armature.animation_data.action], path, options, pelvis="hips")
     return shown, reimport(path, shown.frames, begins=1.0)
 
@@ -124,6 +124,29 @@ def test_what_rests_on_a_root_bone_goes_with_it(tmp_path: Path) -> None:
     for name in ("hips", "foot", "ik_foot"):
         seen = shown.heads[:, shown.index(name)]
         np.testing.assert_allclose(again.heads[:, again.index(name)], seen, atol=1e-4)
+
+
+@pytest.mark.parametrize("root", list(RootMotion))
+def test_at_the_origin_a_take_begins_as_the_figure_stands_at_rest(
+    root: RootMotion, tmp_path: Path
+) -> None:
+    """The same motion, moved and turned on the floor; a root that rests stays there."""
+    _, before = walked(root, tmp_path / "walk.fbx")
+    _, after = walked(root, tmp_path / "origin.fbx", at_origin=True)
+    rest = walking().data.bones
+    hips, foot, top = (after.index(name) for name in ("hips", "foot", "root"))
+    level = rest["hips"].matrix_local.translation[:2]
+    np.testing.assert_allclose(after.heads[0, hips, :2], level, atol=1e-4)
+    turned = after.rotations[0, hips] @ np.array(rest["hips"].matrix_local.to_3x3()).T
+    assert turned[1, 0] == pytest.approx(turned[0, 1], abs=1e-4)  # no turn about the vertical
+    np.testing.assert_allclose(
+        after.heads[0, top], rest["root"].matrix_local.translation, atol=1e-4
+    )
+    if root is not RootMotion.ROOT_BONE:
+        assert np.ptp(after.heads[:, top], axis=0).max() < 1e-4
+    for one in (hips, foot):  # distances from the first hips are those of before
+        apart = [each.heads[:, one] - each.heads[0, hips] for each in (before, after)]
+        np.testing.assert_allclose(*(np.linalg.norm(each, axis=1) for each in apart), atol=1e-4)
 
 
 def test_as_it_is_takes_no_root_bone_but_where_an_engine_needs_one(tmp_path: Path) -> None:

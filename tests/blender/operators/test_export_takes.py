@@ -153,10 +153,32 @@ def test_a_pelvis_that_was_renamed_is_asked_for_where_it_is_needed(
     assert "Traceback" not in str(refused.value)
 
 
+@pytest.mark.slow
+def test_each_take_in_a_file_that_is_called_after_it(
+    accepted: bpy.types.Object, tmp_path: Path
+) -> None:
+    """Unity's after an @, by which it knows takes; no file replaces another of the same export."""
+    first = current_action(accepted)
+    for name in ("Longer/2", "longer:2"):
+        first.copy().name = name
+    path = str(tmp_path / "jumps.fbx")
+    assert bpy.ops.hangtime.export(filepath=path, engine="UNITY", takes="FILES") == {"FINISHED"}
+    held = {file.name: set(fbx_file(file).takes) for file in tmp_path.iterdir()}
+    assert held == {
+        "jumps@Longer.fbx": {"Longer"},
+        "jumps@Longer_2.fbx": {"Longer/2"},
+        "jumps@longer_2_2.fbx": {"longer:2"},
+    }
+
+
+@pytest.mark.usefixtures("accepted")
 def test_the_dialog_mends_endings_and_leaves_a_folder_without_a_name_alone(tmp_path: Path) -> None:
-    def mended(name: str) -> str:
-        dialog = SimpleNamespace(filepath=f"{tmp_path}/{name}", _options=ExportOptions)
-        ExportTakesOperator.check(dialog, None)
+    def mended(name: str, takes: str = "SHOWN") -> str:
+        dialog = SimpleNamespace(filepath=f"{tmp_path}/{name}", takes=takes, _options=ExportOptions)
+        ExportTakesOperator.check(dialog, bpy.context)
         return dialog.filepath.removeprefix(f"{tmp_path}/")
 
     assert [mended(name) for name in ("", "jump", "jump.GLB")] == ["", "jump.fbx", "jump.fbx"]
+    armature = bpy.context.object.name
+    assert mended("Longer.fbx", "FILES") == f"{armature}.fbx"
+    assert mended(armature, "ACCEPTED") == "Longer.fbx"

@@ -14,8 +14,9 @@ def test_the_file_is_asked_for() -> None:
     format = "fbx"
     root = "in place"
     skin = true
+    at_origin = true
     """
-    asked = ExportOptions(Engine.GODOT, FileFormat.FBX, RootMotion.IN_PLACE, skin=True)
+    asked = ExportOptions(Engine.GODOT, FileFormat.FBX, RootMotion.IN_PLACE, True, True)
     assert parse_recipe(text).export == asked
     assert parse_recipe("[export]").export == ExportOptions()
     assert parse_recipe("mass = 70").export is None
