@@ -19,6 +19,7 @@ from ..data.problem import Pin
 from ..data.scene import SceneObject
 from ..numerics.rotations import rotation_matrix
 from ..scene.triangle_mesh import Heights, TriangleMesh
+from .performance import above_ground
 
 ROUNDS = 6  # in which a foot's plane settles on curved ground
 STEP = 0.04  # m, by which a face lies above or below a foot's plane and is another one's
@@ -49,9 +50,14 @@ class Ground:
 
 
 def land(
-    ground: Ground, contacts: Sequence[Contact], places: FloatArray, character: Character
+    ground: Ground,
+    contacts: Sequence[Contact],
+    places: FloatArray,
+    character: Character,
+    floor_m: float,
 ) -> Footing:
-    """Contacts, at places (n, 3) m, put onto an object.
+    """Contacts, at places (n, 3) m, put onto an object, a palm's point above the face. floor_m:
+    height of the recording's floor.
 
     Raises NoFaceThere, OverTheEdge, InsideOut.
     """
@@ -59,7 +65,8 @@ def land(
     for foot in _feet(contacts, character):
         names = [contacts[i].name for i in foot]
         places[foot], normals[foot] = _stand(ground, names, places[foot])
-    return Footing(places, normals)
+    above = above_ground(contacts, character, floor_m)
+    return Footing(places + above[:, None] * normals, normals)
 
 
 def _feet(contacts: Sequence[Contact], character: Character) -> Iterator[list[int]]:

@@ -87,9 +87,8 @@ def _landed(
 ) -> Footing:
     """The chosen contacts, at places (k, 3) m, on the object that their pin names."""
     contacts = [schedule.contacts[i] for i in chosen]
-    return land(
-        Ground(pin.name, thing, placed_mesh(thing)), contacts, places, performance.character
-    )
+    ground = Ground(pin.name, thing, placed_mesh(thing))
+    return land(ground, contacts, places, performance.character, schedule.floor_m)
 
 
 def phase_of(pin: Pin, schedule: ContactSchedule) -> Phase:

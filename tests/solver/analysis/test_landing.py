@@ -5,13 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hangtime.operators.words.messages import sentence
-from hangtime.solver.analysis.landing import Footing
+from hangtime.solver.analysis.landing import Footing, Ground, land
+from hangtime.solver.analysis.performance import point_depth
 from hangtime.solver.analysis.pinned_places import chosen_contacts, phase_of, pinned_footing
 from hangtime.solver.arrays import FloatArray
+from hangtime.solver.body.anatomy import Part
+from hangtime.solver.data.contacts import Contact
 from hangtime.solver.data.faults import Fault, InsideOut, NoFaceThere, OverTheEdge, UnknownObject
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.scene import SceneObject
 from hangtime.solver.numerics.rotations import axis_rotation
+from hangtime.solver.scene.triangle_mesh import placed_mesh
 from hangtime.tests.helpers.fitted_hop import hop
 from hangtime.tests.helpers.meshes import box, thing
 
@@ -53,6 +57,20 @@ def test_feet_lie_on_a_slope_and_stay_as_long_as_they_are(axis: int, degrees: fl
         foot = [k for k, name in enumerate(sides) if name == side]
         lengths = [np.linalg.norm(np.ptp(each.places[foot], axis=0)) for each in (found, flat)]
         assert lengths[0] == pytest.approx(lengths[1], abs=1e-6)
+
+
+@pytest.mark.parametrize("recorded", [0.03, 0.9])
+def test_a_palm_lies_on_a_face_with_its_point_inside_the_hand(recorded: float) -> None:
+    """As high above it as above the recording's floor, or by a hand's depth."""
+    character, tilt = hop().performance.character, axis_rotation(0, 0.3)
+    place = np.array([0.1, 0.2, recorded])
+    hand = next(body.bone for body in character.bodies if body.part is Part.HAND)
+    contact = Contact("Left hand 1", "Left hand", hand, np.zeros(3), 0.0, 1.0, place)
+    crate = thing("Crate", box((1.5, 1.5, 0.2)), (0.0, 0.0, 0.5), rotation=tilt)
+    ground = Ground("Vault", crate, placed_mesh(crate))
+    found = land(ground, [contact], place[None], character, floor_m=0.0)
+    above = (found.places[0] - crate.positions[0]) @ tilt[:, 2] - 0.1
+    assert above == pytest.approx(min(recorded, point_depth("Left hand", character)), abs=1e-6)
 
 
 def test_feet_may_stand_on_different_steps() -> None:
