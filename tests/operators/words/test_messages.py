@@ -19,9 +19,13 @@ from hangtime.operators.words.templates import (
     OUTCOMES,
     TEMPLATES,
     changes,
-    faults,
+    loops,
     outcomes,
+    recordings,
+    requests,
     rigs,
+    scenes,
+    solving,
 )
 from hangtime.solver.data.faults import (
     BadRecipe,
@@ -115,7 +119,9 @@ def test_every_template_can_be_filled(kind: type[Fault]) -> None:
         assert "{" not in words
 
 
-@pytest.mark.parametrize("templates", [changes, faults, outcomes, rigs])
+@pytest.mark.parametrize(
+    "templates", [changes, loops, outcomes, recordings, requests, rigs, scenes, solving]
+)
 def test_every_template_is_one_literal_for_translators(templates: ModuleType) -> None:
     body = ast.parse(inspect.getsource(templates)).body
     tables = [each.value for each in body if isinstance(each, ast.Assign | ast.AnnAssign)]
