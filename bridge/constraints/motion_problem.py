@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 
 from ...solver.analysis.motion_sketch import MotionSketch
-from ...solver.data.contacts import Contact, ContactSchedule, Interval, Phase, PhaseKind, numbered
+from ...solver.contacts.events import numbered
+from ...solver.data.contacts import Contact, ContactSchedule, Interval, Phase, PhaseKind
 from ...solver.data.faults import EmptyRange, NoNumber, PlacedNowhere, UnreadableRepairs
 from ...solver.data.problem import AddedContact, ContactEdit, MassTable, MotionProblem, Pin
 from ...solver.data.recording import Recording, Skin

@@ -16,14 +16,8 @@ import numpy as np
 
 from ..arrays import BoolArray
 from ..body.character import Character, build_character
-from ..data.contacts import (
-    Contact,
-    ContactSchedule,
-    Interval,
-    PointKind,
-    numbered,
-    snap,
-)
+from ..contacts.events import numbered, snap
+from ..data.contacts import Contact, ContactSchedule, Interval, PointKind
 from ..data.faults import (
     BadTiming,
     BesideFrames,

@@ -11,17 +11,10 @@ from ..body.anatomy import Part, Side
 from ..body.character import Character, body_rotations
 from ..body.kinematics import BodyPoint
 from ..contacts.contact_detection import detect_contacts
+from ..contacts.events import numbered, snap
 from ..contacts.flat_soles import lying
 from ..contacts.known_contacts import Clock, with_known
-from ..data.contacts import (
-    Contact,
-    ContactPoint,
-    ContactSchedule,
-    Interval,
-    PointKind,
-    numbered,
-    snap,
-)
+from ..data.contacts import Contact, ContactPoint, ContactSchedule, Interval, PointKind
 from ..data.recording import Recording, Skin
 from ..data.scene import SceneObject
 from ..numerics.interpolation import interpolate

@@ -14,13 +14,13 @@ from ..data.contacts import (
     ContactThresholds,
     Interval,
     gaps,
-    numbered,
 )
 from ..numerics.interpolation import interpolate
 from ..numerics.runs import runs
 from ..scene.carrier import Carrier
 from ..scene.support import LEAST_HEIGHT, Heights, level
 from ..unseen.free_fall import is_free_fall, off_gravity, unseen_support
+from .events import numbered
 from .flat_soles import lies_elsewhere, lying
 from .force_timing import timed_by_forces
 from .noisy_touches import joined_over_noise

@@ -20,7 +20,8 @@ from hangtime.solver.analysis.grounding import (
     rigid,
 )
 from hangtime.solver.analysis.performance import find_contacts
-from hangtime.solver.data.contacts import Contact, ContactSchedule, Interval, numbered
+from hangtime.solver.contacts.events import numbered
+from hangtime.solver.data.contacts import Contact, ContactSchedule, Interval
 from hangtime.solver.data.problem import ContactEdit, MotionProblem
 from hangtime.solver.numerics.rotations import unit
 from hangtime.tests.helpers.clips import load_recording

@@ -13,8 +13,9 @@ from hangtime.solver.analysis.pinned_places import (
     travel_axes,
 )
 from hangtime.solver.arrays import FloatArray
+from hangtime.solver.contacts.events import numbered
 from hangtime.solver.contacts.footfalls import footfalls
-from hangtime.solver.data.contacts import Contact, ContactSchedule, Touch, numbered
+from hangtime.solver.data.contacts import Contact, ContactSchedule, Touch
 from hangtime.solver.data.faults import (
     BesideFrames,
     BeyondPrecision,

@@ -18,6 +18,7 @@ from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import build_character
 from hangtime.solver.contacts.contact_detection import detect_contacts
+from hangtime.solver.contacts.events import numbered, snap
 from hangtime.solver.data.contacts import (
     Contact,
     ContactPoint,
@@ -25,8 +26,6 @@ from hangtime.solver.data.contacts import (
     Interval,
     PhaseKind,
     PointKind,
-    numbered,
-    snap,
 )
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import Recording
