@@ -26,7 +26,7 @@ from ..names import OperatorId
 from ..operator_types import FROM_BLEND, OperatorResult
 from ..solve.adapt import ask_for, unanalysed
 from ..solve.common import NO_FILE, FaultyOperator, required_armature
-from ..solve.keys import key_options
+from ..solve.written.keys import key_options
 
 EXPORTED = "Exported {}"
 NO_CLIP = "; it names no recording until this file is saved: name one as CLIP on the command line"

@@ -62,7 +62,6 @@ from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.doubt_text import distance_doubts, doubts_of, empty_doubts
 from .common import chosen_armature, hindrance, quick_solution, refined_solution, required_armature
-from .keys import key_options
 from .live import live
 from .meanwhile.steady import steady
 from .scene import read_bound, read_surfaces
@@ -71,6 +70,7 @@ from .solving import SolveState
 from .takes import left_behind
 from .task import Task, TaskOperator, answered, take_best
 from .write_answer import write_answer
+from .written.keys import key_options
 
 NOT_ANALYSED = "Press Analyze first: there are no contacts to hold or move"
 

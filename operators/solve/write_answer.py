@@ -1,6 +1,5 @@
 """Writes an answer of the solver as a result: an action, its strip or slot, marks and report."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from math import isclose
 
@@ -10,25 +9,16 @@ from ...bridge.accessors import current_action, current_scene, present, root_of,
 from ...bridge.armature.actions import read_recorded_incrementally, recorded_action
 from ...bridge.armature.incremental import Incremental, complete
 from ...bridge.armature.poses import frames_per_second, require_unstretched
-from ...bridge.armature.strips import hidden_beyond, layers_above
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
-from ...bridge.constraints.standing import missed_contacts
-from ...bridge.constraints.status import retimed_frames, write_status
-from ...bridge.controls.aimed import aimed_in, without
-from ...bridge.controls.driven import is_driven
-from ...bridge.controls.held import held_bones
-from ...bridge.controls.kept import KeptByControls
+from ...bridge.controls.aimed import without
 from ...bridge.files.reproportioned import build_reproportioned, in_new_axes
 from ...bridge.loops.write_loop import (
     Loop,
     write_loop_incrementally,
 )
-from ...bridge.polish.pins import MovedPin
 from ...bridge.polish.renewal import Renewal
 from ...bridge.properties.of_actions.known_contacts import SolvedContacts, keep_contacts
-from ...bridge.properties.of_actions.shown_overlaps import store_overlaps
-from ...bridge.properties.of_actions.shown_times import store_times
 from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.recipe.result import require_return_after
 from ...bridge.repairs.analysed_state import AnalysedState
@@ -50,7 +40,6 @@ from ...bridge.takes.write_result import (
     lay_in_slot,
     write_adapted_incrementally,
 )
-from ...solver.body.character import build_character
 from ...solver.body.proportions import changed_recording
 from ...solver.data.faults import (
     ChangedMeanwhile,
@@ -58,22 +47,11 @@ from ...solver.data.faults import (
     Fault,
     RateChanged,
 )
-from ...solver.data.recording import PoseTrack, same_motion
+from ...solver.data.recording import same_motion
 from ...solver.data.solver_options import Method
 from ...solver.worker.protocol import Adapted
-from ..words.headline import blend_lines, missed_body_lines, missed_line, slide_lines
-from ..words.report_text import as_text
-from ..words.summary_text import summary
-from ..words.take_text import (
-    LEAST_SHIFT_MM,
-    aimed_line,
-    apart_lines,
-    pin_lines,
-    polish_lines,
-    take_lines,
-)
-from ..words.warning_text import warnings_of
-from .keys import mark_contacts, write_keys
+from ..words.headline import blend_lines, slide_lines
+from ..words.take_text import take_lines
 from .meanwhile.standing import Kept
 from .meanwhile.steady import steady
 from .meanwhile.undisturbed import undisturbed
@@ -81,13 +59,20 @@ from .scene import note_surfaces, stale_surfaces
 from .session import Asked, session
 from .solving import SolveState
 from .watch import look_soon
+from .written.keys import mark_contacts, write_keys
+from .written.told import (
+    layers_lines,
+    note,
+    tell_aimed,
+    tell_missed,
+    tell_polish,
+    tell_unmet,
+    warn,
+    warn_of_controls,
+)
 
 ALONE = (
     "The rest of the take is left out: {} has other limbs, and performs the adapted frames alone"
-)
-HELD = (
-    "Constraints keep {} from the result (frame {:g}), so it is not what was solved; mute them and "
-    "press Update"
 )
 FORMS = {
     WrittenAs.ACTION: "action",
@@ -99,14 +84,6 @@ SCENE_LONGER = "{} scene now ends at frame {}"
 MARKERS_LEFT_OUT = (
     "Contact markers are left out: an action's are those of all of its slots, the take's included; "
     "choose Timeline"
-)
-LAYERS_HIDDEN = (
-    "Strips above the take's ({}) do not add to this result, for an action goes before all strips; "
-    "choose NLA Strip, Replace or Combine, under Written As"
-)
-OTHERS_HIDDEN = (
-    "Before and after its own frames this result hides other strips of the shot, which the take's "
-    "strip ({}) does not; choose NLA Strip, Replace, under Written As"
 )
 
 
@@ -133,7 +110,8 @@ def _write(
     else:
         written = replace(answer, track=without(answer.track, asked.aimed))
         done = yield from _write_own(asked, written, armature)
-        _tell_aimed(asked, armature, answer.track)
+        if asked.aimed:
+            tell_aimed(armature, asked.aimed, asked.window, asked.problem, answer.track)
     remarks = note_surfaces(armature, asked, answer.report, stale)
     settings = settings_of(armature)
     scene, told = current_scene(), [settings.status, *remarks]
@@ -155,11 +133,11 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         loop = Loop.of(armature, answer.track, looped.root)
         action, made = yield from write_loop_incrementally(armature, loop)
         keep(action, answer.traces, stood)
-        told = [*take_lines(made), *_layers_lines(armature, action)]
-        _note(armature, armature, action, answer, told)
-        _warn_of_controls(armature, action, made.controls)
+        told = [*take_lines(made), *layers_lines(armature, action)]
+        note(armature, armature, action, answer, told)
+        warn_of_controls(armature, action, made.controls)
         if loop.travels:
-            complete(_tell_missed(armature, armature, action, answer))
+            complete(tell_missed(armature, armature, action, answer))
         mark_contacts(armature, action, answer, options)
         keep_contacts(action, _solved_contacts(asked, answer))
         note_made(armature, action, None, 0, asked.settings)
@@ -183,25 +161,25 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         told = [*told, MARKERS_LEFT_OUT]
     if options.written_as in (WrittenAs.ACTION, WrittenAs.SLOT):
         in_slot = options.written_as is WrittenAs.SLOT
-        told = [*told, *_layers_lines(armature, action, in_slot=in_slot)]
-    _note(armature, armature, action, answer, told)
+        told = [*told, *layers_lines(armature, action, in_slot=in_slot)]
+    note(armature, armature, action, answer, told)
     if written is not None:
-        _warn_of_controls(armature, action, written.controls)
-        _warn(armature, action, [*blend_lines(written.blends), *slide_lines(written.slide)])
+        warn_of_controls(armature, action, written.controls)
+        warn(armature, action, [*blend_lines(written.blends), *slide_lines(written.slide)])
     times = answer.report.times
     time = written.time if written is not None else TakeTime.of(times, 1.0)
     span = written.span if written is not None else None
     keep_contacts(action, _solved_contacts(asked, answer), asked.recording.known, time.later)
     finishing = _finish(armature, action, asked, answer, renewal, span, time)
     try:
-        yield from _tell_missed(armature, armature, action, answer)
+        yield from tell_missed(armature, armature, action, answer)
         rate = answer.report.recording.frames_per_second
         bones, along = answer.track.bones, () if written is None else written.companions.bones
         moved = yield from renewal.put_on(action, bones, along, time, answer.schedule, rate)
-        _tell_polish(armature, action, renewal, moved)
+        tell_polish(armature, action, renewal, moved)
         rig = written.rig if written is not None else None
         yield from write_keys(armature, armature, action, answer, asked.keys, rig)
-        yield from _tell_unmet(armature, action, answer.track)
+        yield from tell_unmet(armature, action, answer.track)
         for _ in finishing:  # not "yield from", which would close it with what it is part of
             yield None
     except (Fault, ReferenceError):  # by which the result goes
@@ -237,93 +215,9 @@ def _finish(
     renewal.note(action, time, (frames[0], frames[-1]))
 
 
-def _layers_lines(
-    armature: bpy.types.Object, action: bpy.types.Action, *, in_slot: bool = False
-) -> list[str]:
-    """Which of the artist's strips acted on what a result was made from, and do not on it, and
-    whether it hides others of the shot."""
-    layers = layers_above(armature, present(source_of(action)))
-    hiding = hidden_beyond(armature, action, in_slot=in_slot)
-    lines = [LAYERS_HIDDEN.format(", ".join(layers))] if layers else []
-    return lines if hiding is None else [*lines, OTHERS_HIDDEN.format(hiding)]
-
-
 def _solved_contacts(asked: Asked, answer: Adapted) -> SolvedContacts:
     rate = answer.report.recording.frames_per_second
     return SolvedContacts(answer.schedule, answer.track.frames, rate, asked.problem.scene)
-
-
-def _tell_aimed(asked: Asked, armature: bpy.types.Object, track: PoseTrack) -> None:
-    """How far bones that stay aimed are from the solution's track, as a warning where that counts,
-    and which poses leave them out."""
-    if not asked.aimed:
-        return
-    problem, action = asked.problem, present(settings_of(armature).adapted)
-    figure = build_character(
-        asked.window, mass=problem.mass, table=problem.mass_table, chosen=problem.bones
-    )
-    aimed = aimed_in(armature, asked.aimed, track, figure.bodies)
-    if aimed is not None:
-        far, line = aimed.mm > LEAST_SHIFT_MM, aimed_line(aimed)
-        apart = apart_lines(problem.requests.poses, track.bones)
-        _warn(armature, action, [line] * far, [*[line] * (not far), *apart])
-
-
-def _tell_unmet(
-    armature: bpy.types.Object, action: bpy.types.Action, track: PoseTrack
-) -> Incremental[None]:
-    """Which bones constraints keep from the result, such as a limit that the take did not reach."""
-    if is_driven(armature, track.bones):  # what controls miss is told as they are written
-        return
-    held = yield from held_bones(armature, track.bones, track.frames)
-    if held:
-        _warn(armature, action, [HELD.format(", ".join(held), min(held.values()))])
-
-
-def _tell_missed(
-    armature: bpy.types.Object,
-    performer: bpy.types.Object,
-    action: bpy.types.Action,
-    answer: Adapted,
-) -> Incremental[None]:
-    """Where points that stand are not where they were solved to be: before all else, and among the
-    warnings. performer: who shows the action."""
-    missed = yield from missed_contacts(performer, answer.schedule, answer.traces)
-    if missed:
-        settings, made, line = settings_of(armature), action_settings(action), missed_line(missed)
-        settings.status, made.report = f"{line}\n{settings.status}", f"{line}\n{made.report}"
-        made.warning = "\n".join([line for line in (line, made.warning) if line])
-
-
-def _tell_polish(
-    armature: bpy.types.Object,
-    action: bpy.types.Action,
-    renewal: Renewal,
-    moved: Sequence[MovedPin],
-) -> None:
-    """What became of hand polish: in the sidebar, the report, and among the warnings."""
-    _warn(armature, action, pin_lines(moved), polish_lines(renewal.put))
-
-
-def _warn_of_controls(
-    armature: bpy.types.Object, action: bpy.types.Action, kept: KeptByControls | None
-) -> None:
-    """Warn of bones that controls, if there are any, leave far from the solution."""
-    if kept is not None:
-        _warn(armature, action, missed_body_lines(kept.lost))
-
-
-def _warn(
-    armature: bpy.types.Object,
-    action: bpy.types.Action,
-    warned: Sequence[str],
-    told: Sequence[str] = (),
-) -> None:
-    """Say more of a result in the sidebar and its report, and warn before it is accepted."""
-    settings, made = settings_of(armature), action_settings(action)
-    settings.status = "\n".join([settings.status, *told, *warned])
-    made.report = "\n".join([made.report, *told, *warned])
-    made.warning = "\n".join([line for line in (made.warning, *warned) if line])
 
 
 def _write_other(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Incremental[str]:
@@ -341,36 +235,12 @@ def _write_other(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> I
     keep(action, answer.traces, armature.matrix_world)
     options = asked.result
     left_out = [] if options.after is After.CUT else [ALONE.format(other.name)]
-    _note(armature, other, action, answer, left_out)
+    note(armature, other, action, answer, left_out)
     turned = replace(answer, schedule=in_new_axes(answer.schedule, turns))
-    yield from _tell_missed(armature, other, action, turned)
+    yield from tell_missed(armature, other, action, turned)
     yield from write_keys(armature, other, action, answer, asked.keys)
     mark_contacts(other, action, answer, options)
     return f"Made the armature {other.name}, which performs the adapted motion"
-
-
-def _note(
-    armature: bpy.types.Object,
-    performer: bpy.types.Object,
-    action: bpy.types.Action,
-    answer: Adapted,
-    told: Sequence[str] = (),
-) -> None:
-    """Keeps what was found beside the action, and how each constraint came out.
-
-    told: lines about the rest of the take.
-    """
-    settings = settings_of(armature)
-    called = roles_in(settings, answer.report)
-    said = summary(answer, called, retimed_frames(settings, answer.report.times))
-    settings.status = "\n".join([said, *told])
-    write_status(settings, answer.report)
-    action_settings(action).report = "\n".join([as_text(answer.report), *told])
-    store_times(action, answer.report.times)
-    store_overlaps(action, answer.report)
-    action_settings(action).warning = "\n".join(warnings_of(answer.report))
-    if performer != armature:
-        action_settings(action).performer = performer
 
 
 def _unchanged(asked: Asked) -> Incremental[bpy.types.Object]:

@@ -15,7 +15,7 @@ from hangtime.bridge.recipe.problem import Recipe, parse_recipe
 from hangtime.bridge.recipe.shortest import shortest
 from hangtime.bridge.takes.options import result_options
 from hangtime.operators.solve.adapt import ask_for
-from hangtime.operators.solve.keys import key_options
+from hangtime.operators.solve.written.keys import key_options
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.scene.triangle_mesh import placed_mesh
 from hangtime.tests.blender.helpers.solids import add_row, make_box

@@ -25,11 +25,11 @@ from hangtime.operators.solve import write_answer as write_answer_module
 from hangtime.operators.solve.adapt import AdaptOperator, ask_for
 from hangtime.operators.solve.analyze import AnalyzeOperator, FitOperator
 from hangtime.operators.solve.common import said
-from hangtime.operators.solve.keys import mark_contacts
 from hangtime.operators.solve.session import Asked, session
 from hangtime.operators.solve.solving import SolveState, Solving
 from hangtime.operators.solve.task import Task, TaskOperator
 from hangtime.operators.solve.write_answer import write_answer
+from hangtime.operators.solve.written.keys import mark_contacts
 from hangtime.solver.data.faults import Fault, NoArmature
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.worker.protocol import RequestKind

@@ -4,22 +4,22 @@ from math import degrees, radians
 
 import bpy
 
-from ...bridge.accessors import present
-from ...bridge.armature import fcurves
-from ...bridge.armature.actions import recorded_action
-from ...bridge.armature.incremental import Incremental
-from ...bridge.armature.played import in_scene_time
-from ...bridge.controls.control_rig import ControlRig
-from ...bridge.keys.contact_marks import limb_contacts, write_contact_channels, write_markers
-from ...bridge.keys.events import events_of
-from ...bridge.keys.written import KeyedAction, choose_keys
-from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
-from ...bridge.recipe.keys import KeyOptions
-from ...bridge.recipe.result import ResultOptions
-from ...bridge.rows.choices import KeyChoice
-from ...bridge.takes.options import text_of
-from ...solver.worker.protocol import Adapted
-from ..words.report_text import keys_line
+from ....bridge.accessors import present
+from ....bridge.armature import fcurves
+from ....bridge.armature.actions import recorded_action
+from ....bridge.armature.incremental import Incremental
+from ....bridge.armature.played import in_scene_time
+from ....bridge.controls.control_rig import ControlRig
+from ....bridge.keys.contact_marks import limb_contacts, write_contact_channels, write_markers
+from ....bridge.keys.events import events_of
+from ....bridge.keys.written import KeyedAction, choose_keys
+from ....bridge.properties.settings import HangtimeSettings, action_settings, settings_of
+from ....bridge.recipe.keys import KeyOptions
+from ....bridge.recipe.result import ResultOptions
+from ....bridge.rows.choices import KeyChoice
+from ....bridge.takes.options import text_of
+from ....solver.worker.protocol import Adapted
+from ...words.report_text import keys_line
 
 
 def key_options(settings: HangtimeSettings) -> KeyOptions:

@@ -1,0 +1,1 @@
+"""What comes once a result's keys are written: marks, fewer keys, and what is told of it."""
