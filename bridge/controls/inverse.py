@@ -8,18 +8,20 @@ as the reference: Engl, Hanke and Neubauer, Regularization of Inverse Problems, 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from ...solver.arrays import BoolArray, FloatArray, IntArray
-from ...solver.numerics.rotations import rotation_matrix, rotation_vector
+from ...solver.arrays import BoolArray, FloatArray
+from ...solver.numerics.rotations import rotation_vector
 from ..armature.channels import proper
 from .followed import FAINT, Influences
+from .leading import led_by, moved_by, ranks
 from .needed import LEVER
+from .offsets import SIZE, changed, difference, offsets_of, places_of, with_offsets
 from .posing import Posed, Posing
-from .responses import Columns, Dof, Freedom, Responses, apart, measured
+from .responses import Columns, Freedom, Responses, apart, measured
 from .targets import Targets, move_of_pelvis, moved_bases
 
 STEPS = 30
@@ -45,7 +47,6 @@ SAME, AGREEING = 1e-3, 2  # share of the cost, and other starts that lead there:
 SLIGHT = 0.002
 HARDLY, IDLE_STEPS = 0.03, 2  # share of such an error, and steps that gain less, to end by
 FAR = 0.1  # m of error at the first guess, above which controls are put beside their bodies
-FULL = 0.05  # of a turn, by which a body that follows in full may miss it
 # m of error that a control's turn by 1 rad, or shift by 1 m, beside the take counts: what bodies
 # need of it they get within some hundredths of a mm, and what they do not need is left.
 BESIDE = 0.002
@@ -60,10 +61,6 @@ class Inverted:
     bases: FloatArray
     off: FloatArray
     turned: FloatArray
-
-
-_SIZE = 6
-_COLUMN = {Freedom.TURN: 0, Freedom.SHIFT: 3, Freedom.SIZE: _SIZE}  # of offsets (C, 7)
 
 
 @dataclass(frozen=True)
@@ -93,40 +90,6 @@ class _Look:
         return np.asarray(np.linalg.norm(lacks, axis=2))
 
 
-def _offset(animated: FloatArray, offsets: FloatArray) -> FloatArray:
-    """Bases (C, 4, 4) with offsets (C, 7): turn vector in the basis's axes, shift, log of size."""
-    bases = animated.copy()
-    sizes = np.exp(offsets[:, _SIZE])[:, None, None]
-    bases[:, :3, :3] = sizes * (animated[:, :3, :3] @ rotation_matrix(offsets[:, :3]))
-    bases[:, :3, 3] += offsets[:, 3:6]
-    return bases
-
-
-def _changed(offsets: FloatArray, changes: FloatArray) -> FloatArray:
-    """Offsets (C, 7) with small changes, turns last."""
-    moved = offsets + changes
-    turns = rotation_matrix(offsets[:, :3]) @ rotation_matrix(changes[:, :3])
-    moved[:, :3] = rotation_vector(turns)
-    return moved
-
-
-def _difference(before: FloatArray, after: FloatArray) -> FloatArray:
-    """The changes (C, 7) that make offsets of others."""
-    changes = after - before
-    turns = np.swapaxes(rotation_matrix(before[:, :3]), 1, 2) @ rotation_matrix(after[:, :3])
-    changes[:, :3] = rotation_vector(turns)
-    return changes
-
-
-def _differing(animated: FloatArray, bases: FloatArray) -> FloatArray:
-    """Offsets (C, 7) from the animated bases, of which bases (C, 4, 4) differ but by size."""
-    offsets = np.zeros((len(bases), 7))
-    before, after = proper(animated[:, :3, :3]), proper(bases[:, :3, :3])
-    offsets[:, :3] = rotation_vector(np.swapaxes(before, 1, 2) @ after)
-    offsets[:, 3:6] = bases[:, :3, 3] - animated[:, :3, 3]
-    return offsets
-
-
 def _enough(beside: float) -> float:
     """Error, m, that a frame may be left with beside one that was left with so much."""
     return min(max(SUSPECT, MORE_LEFT * beside), LOST)
@@ -135,27 +98,6 @@ def _enough(beside: float) -> float:
 def _inverted(found: _Look) -> Inverted:
     off, turned = found.by_body
     return Inverted(found.bases, off, turned / LEVER)
-
-
-def _ranks(responses: Responses) -> list[list[int]]:
-    """The controls that can be shifted, in as few groups as come by themselves of which none is
-    moved by a later one nor by its own."""
-    left = sorted({dof.control for dof in responses.dofs if dof.shifts})
-    moves = np.zeros((responses.moved.shape[1],) * 2, dtype=bool)
-    for dof, moved in zip(responses.dofs, responses.moved, strict=True):
-        moves[dof.control] |= moved
-    found = []
-    while left:
-        first = [c for c in left if not moves[left, c].any()] or left[:1]
-        found.append(first)
-        left = [c for c in left if c not in first]
-    return found
-
-
-def _places(dofs: Sequence[Dof]) -> tuple[IntArray, IntArray]:
-    """Of dofs in offsets (C, 7)."""
-    controls = [dof.control for dof in dofs]
-    return np.array(controls), np.array([_COLUMN[dof.freedom] + dof.axis for dof in dofs])
 
 
 class Inverse:
@@ -172,7 +114,7 @@ class Inverse:
         self._carries = np.array([name in carriers for name in posing.controls])
         self._groups = apart(responses)
         self._responses = responses
-        self._ranks = _ranks(responses)
+        self._ranks = ranks(responses)
         self._offsets = np.zeros((len(posing.controls), 7))
         self._change = np.zeros_like(self._offsets)  # of the offsets at the last frame
         self._influences = Influences(posing.armature)
@@ -192,7 +134,7 @@ class Inverse:
         more as it was changed there, whichever is nearer, and where both are far off with controls
         beside their bodies as they were there; where that leads nowhere, from others."""
         animated = self._begun(t)
-        starts = [self._offsets, _changed(self._offsets, self._change)]
+        starts = [self._offsets, changed(self._offsets, self._change)]
         starts += [self._reference] * self._as_taken
         looks = [self._look(animated, start, t) for start in starts]
         nearest = int(np.argmin([look.cost for look in looks]))
@@ -213,7 +155,7 @@ class Inverse:
             if other[1].cost < best.cost:
                 offsets, best = other
         met = best.size < LOST
-        self._change = _difference(self._offsets, offsets) if met else np.zeros_like(offsets)
+        self._change = difference(self._offsets, offsets) if met else np.zeros_like(offsets)
         self._met, self._left = best.posed if met else self._met, best.size
         self._offsets = offsets
         self._needed[t] = offsets, best.size
@@ -229,12 +171,12 @@ class Inverse:
         moved = move @ shown.bodies
         lacks = self._lacks(moved[:, :3, 3], proper(moved[:, :3, :3]), t)
         self._as_taken = bool(np.linalg.norm(lacks) < SUSPECT)
-        carried = _differing(animated, moved_bases(shown, move))
+        carried = offsets_of(animated, moved_bases(shown, move))
         self._reference = np.where((self._carries & felt)[:, None], carried, 0.0)
         self._weights = np.zeros_like(self._reference)
         lengths = {Freedom.SHIFT: self._targets.unit[t], Freedom.SIZE: SIZES / BESIDE}
         each = np.array([lengths.get(dof.freedom, 1.0) for dof in self._responses.dofs])
-        places = _places(self._responses.dofs)
+        places = places_of(self._responses.dofs)
         self._weights[places] = BESIDE * each * felt[places[0]]
         return animated
 
@@ -289,7 +231,8 @@ class Inverse:
         wanted, offsets = self._targets, offsets.copy()
         dofs = self._responses.dofs
         for rank in self._ranks:
-            led = [(c, self._led(c)) for c in rank if (self._moved(c) & bodies).any()]
+            moving = [c for c in rank if (moved_by(self._responses, c) & bodies).any()]
+            led = [(c, led_by(self._responses, c)) for c in moving]
             posed = self._look(animated, offsets, t).posed if led else seen
             for control, body in led:
                 if body is None:
@@ -307,23 +250,6 @@ class Inverse:
                     )
         return offsets
 
-    def _led(self, control: int) -> int | None:
-        """The first body that turns with a control in full, or else is moved by it."""
-        dofs = self._responses.dofs
-        turns = [d for d in self._own(control) if dofs[d].freedom is Freedom.TURN]
-        amounts = np.linalg.norm(self._responses.turns[turns], axis=2)
-        full = (np.abs(amounts - 1.0) < FULL).all(0) & bool(turns)
-        found = np.flatnonzero(full if full.any() else self._moved(control))
-        return int(found[0]) if len(found) else None
-
-    def _moved(self, control: int) -> BoolArray:
-        """(B,) whether a control moves each body."""
-        return np.asarray(self._responses.follow[self._own(control)].any(axis=0))
-
-    def _own(self, control: int) -> list[int]:
-        """The dofs of a control."""
-        return [d for d, dof in enumerate(self._responses.dofs) if dof.control == control]
-
     def _try_where_switched(self, animated: FloatArray) -> BoolArray:
         """At the first frame, and where other constraints act than before and so other controls do:
         try them anew, and leave to the take those that do nothing. (C,) which do something."""
@@ -331,7 +257,7 @@ class Inverse:
         if self._acted is None or (acts != self._acted).any():
             self._responses = measured(self._posing, animated, self._groups)
             self.tries += len(self._groups)
-            felt = np.array([self._moved(c).any() for c in range(len(animated))])
+            felt = np.array([moved_by(self._responses, c).any() for c in range(len(animated))])
             self._offsets[~felt] = 0.0
             self._change = np.zeros_like(self._offsets)
             self._felt = felt
@@ -373,12 +299,12 @@ class Inverse:
         return offsets, best
 
     def _look(self, animated: FloatArray, offsets: FloatArray, t: int) -> _Look:
-        bases = _offset(animated, offsets)
+        bases = with_offsets(animated, offsets)
         for index, basis in enumerate(bases):
             self._posing.pose(index, basis)
         self.tries += 1
         posed = self._posing.look()
-        beside = self._weights * _difference(offsets, self._reference)
+        beside = self._weights * difference(offsets, self._reference)
         lacks = self._lacks(posed.bodies[:, :3, 3], posed.body_turns, t)
         return _Look(bases, posed, np.append(lacks, beside))
 
@@ -397,7 +323,7 @@ class Inverse:
         columns: of the dofs there; error: as of a look."""
         count = len(columns.turns)
         shifts = self._targets.unit[t] * columns.shifts.reshape(count, -1)
-        places = _places(self._responses.dofs)
+        places = places_of(self._responses.dofs)
         pull = np.zeros((count, *offsets.shape))
         pull[np.arange(count), *places] = self._weights[places]
         turns = LEVER * columns.turns.reshape(count, -1)
@@ -410,5 +336,5 @@ class Inverse:
         changes[places] = step
         turned = np.linalg.norm(changes[:, :3], axis=1, keepdims=True)
         changes[:, :3] *= np.minimum(1.0, LONGEST / np.maximum(turned, 1e-12))
-        changes[:, _SIZE] = np.clip(changes[:, _SIZE], -MOST, MOST)
-        return _changed(offsets, changes), changes[places], float(np.abs(step @ every).max())
+        changes[:, SIZE] = np.clip(changes[:, SIZE], -MOST, MOST)
+        return changed(offsets, changes), changes[places], float(np.abs(step @ every).max())

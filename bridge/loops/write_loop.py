@@ -30,7 +30,7 @@ from ..controls.control_rig import (
     shifts_of_carriers,
 )
 from ..controls.driven import is_driven
-from ..controls.kept import KeptByControls, kept_by
+from ..controls.missed.kept import KeptByControls, kept_by
 from ..controls.targets import targets_of
 from ..fake_users import guard
 from ..properties.settings import settings_of

@@ -11,7 +11,7 @@ from ...solver.data.reports.keys import BlendReport
 from ...solver.data.stance_move import StanceMove
 from ..companions.found import Companions
 from ..controls.control_rig import ControlRig
-from ..controls.kept import KeptByControls
+from ..controls.missed.kept import KeptByControls
 from .offsets import remaining
 from .take_time import TakeTime
 

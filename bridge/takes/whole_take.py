@@ -32,7 +32,7 @@ from ..controls.control_rig import (
     found_controls,
 )
 from ..controls.driven import is_driven
-from ..controls.kept import kept_by
+from ..controls.missed.kept import kept_by
 from ..controls.targets import targets_of
 from .carry import carried, carried_points, shares_of_return, slid, slid_in_blend
 from .key_splice import FullTurns, anchor, applied, retime, splice

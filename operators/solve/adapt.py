@@ -14,8 +14,8 @@ from ...bridge.armature.read import last_keyed
 from ...bridge.constraints.bone_mapping import chosen_parts
 from ...bridge.constraints.leaps import leaps_of, timed_phases
 from ...bridge.constraints.motion_problem import problem_of
-from ...bridge.controls.aimed import led_bones
 from ...bridge.controls.driven import beside_keys, turned_by_drivers
+from ...bridge.controls.missed.aimed import led_bones
 from ...bridge.controls.refusals import require_posable
 from ...bridge.loops.write_loop import (
     root_bone,

@@ -11,7 +11,7 @@ from ...bridge.armature.incremental import Incremental, complete
 from ...bridge.armature.poses import frames_per_second, require_unstretched
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
-from ...bridge.controls.aimed import without
+from ...bridge.controls.missed.aimed import without
 from ...bridge.files.reproportioned import build_reproportioned, in_new_axes
 from ...bridge.loops.write_loop import (
     Loop,

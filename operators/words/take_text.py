@@ -5,8 +5,8 @@ from dataclasses import asdict
 from math import degrees, hypot
 
 from ...bridge.companions.found import Companions
-from ...bridge.controls.aimed import Aimed
-from ...bridge.controls.kept import KeptByControls
+from ...bridge.controls.missed.aimed import Aimed
+from ...bridge.controls.missed.kept import KeptByControls
 from ...bridge.loops.write_loop import WrittenLoop
 from ...bridge.polish.pins import MovedPin
 from ...bridge.polish.put_on import PlacedPolish

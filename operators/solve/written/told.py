@@ -9,10 +9,10 @@ from ....bridge.armature.incremental import Incremental
 from ....bridge.armature.strips import hidden_beyond, layers_above
 from ....bridge.constraints.standing import missed_contacts
 from ....bridge.constraints.status import retimed_frames, write_status
-from ....bridge.controls.aimed import aimed_in
 from ....bridge.controls.driven import is_driven
-from ....bridge.controls.held import held_bones
-from ....bridge.controls.kept import KeptByControls
+from ....bridge.controls.missed.aimed import aimed_in
+from ....bridge.controls.missed.held import held_bones
+from ....bridge.controls.missed.kept import KeptByControls
 from ....bridge.polish.pins import MovedPin
 from ....bridge.polish.renewal import Renewal
 from ....bridge.properties.of_actions.shown_overlaps import store_overlaps

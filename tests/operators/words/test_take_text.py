@@ -5,7 +5,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from hangtime.bridge.controls.aimed import Aimed
+from hangtime.bridge.controls.missed.aimed import Aimed
 from hangtime.bridge.takes.span import ResultSpan, WrittenTake
 from hangtime.bridge.takes.take_time import TakeTime
 from hangtime.operators.words.take_text import aimed_line, apart_lines, take_lines, take_record

@@ -9,8 +9,8 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.armature.incremental import complete
-from hangtime.bridge.controls.aimed import AIMABLE, LedBones, aimed_in, led_bones
 from hangtime.bridge.controls.driven import acting_on
+from hangtime.bridge.controls.missed.aimed import AIMABLE, LedBones, aimed_in, led_bones
 from hangtime.solver.body.anatomy import map_anatomy
 from hangtime.solver.body.character import build_character
 from hangtime.solver.data.recording import PoseTrack

@@ -11,7 +11,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 from hangtime.bridge.accessors import current_action
 from hangtime.bridge.action_slots import all_curves
 from hangtime.bridge.armature.incremental import complete
-from hangtime.bridge.controls.held import LOOKS
+from hangtime.bridge.controls.missed.held import LOOKS
 from hangtime.bridge.controls.posing import Posing
 from hangtime.operators.solve import adapt
 from hangtime.solver.data.faults import HeldBones

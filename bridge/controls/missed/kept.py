@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...solver.arrays import FloatArray
-from ...solver.data.reports.keys import BodyMiss
-from ...solver.numerics.rotations import rotation_vector
-from ..armature.channels import proper
-from ..armature.poses import Poses
-from .targets import Targets
+from ....solver.arrays import FloatArray
+from ....solver.data.reports.keys import BodyMiss
+from ....solver.numerics.rotations import rotation_vector
+from ...armature.channels import proper
+from ...armature.poses import Poses
+from ..targets import Targets
 
 FAR_MM, TURNED_DEG = 1.0, 0.2  # by which a body may miss; beyond, it is told as a miss
 WORST = 3  # bones that are told

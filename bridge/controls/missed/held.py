@@ -9,13 +9,13 @@ from functools import partial
 import bpy
 import numpy as np
 
-from ...solver.arrays import BoolArray, FloatArray
-from ..accessors import armature_data, pose_of
-from ..armature.channels import proper
-from ..armature.incremental import Incremental, in_slices
-from ..armature.pose_basis import place
-from .driven import chain_of
-from .posing import Posing
+from ....solver.arrays import BoolArray, FloatArray
+from ...accessors import armature_data, pose_of
+from ...armature.channels import proper
+from ...armature.incremental import Incremental, in_slices
+from ...armature.pose_basis import place
+from ..driven import chain_of
+from ..posing import Posing
 
 LOOKS = 24  # frames
 TURNED = 2e-3  # rad

@@ -10,15 +10,15 @@ from dataclasses import dataclass, field, replace
 import bpy
 import numpy as np
 
-from ...solver.arrays import FloatArray
-from ...solver.body.character import Body
-from ...solver.data.recording import Bone, PoseTrack, Recording
-from ...solver.numerics.rotations import angles_between
-from ...solver.skeleton.parts import Part, Segment
-from ..armature.incremental import Incremental
-from ..armature.poses import sample
-from ..armature.read import recording_of
-from .driven import acting_on, beside_keys, driven_of, is_driven, turned_by_drivers
+from ....solver.arrays import FloatArray
+from ....solver.body.character import Body
+from ....solver.data.recording import Bone, PoseTrack, Recording
+from ....solver.numerics.rotations import angles_between
+from ....solver.skeleton.parts import Part, Segment
+from ...armature.incremental import Incremental
+from ...armature.poses import sample
+from ...armature.read import recording_of
+from ..driven import acting_on, beside_keys, driven_of, is_driven, turned_by_drivers
 from .held import LOOKS, held_bones
 
 AIMABLE = (Part.NECK, Part.HEAD)
