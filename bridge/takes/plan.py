@@ -15,8 +15,8 @@ from ..armature.fcurves import CurveHolder
 from ..armature.poses import frames_per_second
 from ..recipe.result import ResultOptions
 from ..rows.choices import After
+from .joining.offsets import remaining
 from .key_splice import key_span
-from .offsets import remaining
 from .owned import OwnedChannel
 from .span import BESIDE, BLEND, RETURN, ResultSpan
 from .take_time import TakeTime

@@ -12,7 +12,7 @@ from ...solver.data.stance_move import StanceMove
 from ..companions.found import Companions
 from ..controls.control_rig import ControlRig
 from ..controls.missed.kept import KeptByControls
-from .offsets import remaining
+from .joining.offsets import remaining
 from .take_time import TakeTime
 
 BLEND = 0.25  # s, the usual blend

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from functools import partial
@@ -13,12 +13,10 @@ import numpy as np
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import PoseTrack
 from ...solver.data.reports.keys import BlendReport
-from ...solver.data.stance_move import StanceMove
 from ..accessors import current_scene
 from ..action_slots import all_curves
 from ..armature import fcurves
 from ..armature.actions import note_take, showing_action
-from ..armature.channels import proper
 from ..armature.incremental import Incremental, sample_incrementally
 from ..armature.pose_basis import pose_bases
 from ..armature.poses import Poses, frames_per_second, metres_per_unit
@@ -34,19 +32,8 @@ from ..controls.control_rig import (
 from ..controls.driven import is_driven
 from ..controls.missed.kept import kept_by
 from ..controls.targets import targets_of
-from .carry import carried, carried_points, shares_of_return, slid, slid_in_blend
+from .joining.carry import carried_points, slid_in_blend
 from .key_splice import FullTurns, anchor, applied, retime, splice
-from .offsets import (
-    backwards,
-    beginning,
-    blend_report,
-    faded,
-    frames_from,
-    frames_until,
-    joined,
-    rows,
-    seam_offset,
-)
 from .owned import (
     OwnedChannel,
     carrying_bones,
@@ -59,6 +46,7 @@ from .plain_root import plain_poses
 from .plan import AdaptedMotion, Plan, planned
 from .span import ResultSpan, WrittenTake
 from .take_time import TakeTime
+from .tracks import joined_tracks, places_of, shares_carried
 
 _RETIMED_A_SLICE = 10  # curves
 
@@ -139,8 +127,8 @@ def write_take(
     seen = (*(carrying if plan.back is None else bones), *company.bones)
     copy = _Copy(armature, action, curves, plan, seen if rig is None else None)
     poses, later = was = yield from copy.poses()
-    shares, slide = _shares(poses, later, plan, bones)
-    body, rest, blends = _tracks(poses, later, plan, motion, (carrying, shares))
+    shares, slide = shares_carried(poses, later, plan, bones)
+    body, rest, blends = joined_tracks(poses, later, plan, motion, (carrying, shares))
     yield None
     if roots:  # under which the body is posed then
         bases = _root_bases(armature, roots, was, (body, rest))
@@ -306,62 +294,6 @@ def _apply_modifiers(
     return tuple(dict.fromkeys(bones))
 
 
-def _tracks(
-    poses: Poses,
-    later: Poses | None,
-    plan: Plan,
-    motion: AdaptedMotion,
-    carrying: tuple[tuple[str, ...], FloatArray],
-) -> tuple[PoseTrack, PoseTrack | None, tuple[BlendReport, ...]]:
-    """Poses of all bodies at the body's frames, and of those that carry them at the frames that
-    follow; and how the blends move the hips. carrying: these, and the shares (T,) of the stance's
-    move from the last adapted frame on."""
-    span, rate = plan.span, frames_per_second(current_scene())
-    carriers, shares = carrying
-    take = _take_of(poses, motion.track.bones, plan.body_frames)
-    rest = None
-    if later is not None:
-        rest = _take_of(later, carriers, plan.rest_frames)
-    following = frames_from(take, span.last)
-    count = len(following.frames)
-    goal = _carried(following, plan.moved, shares[:count])
-    after = rows(goal, slice(1, None))
-    blends = []
-    if len(span.after):
-        before = frames_until(take, span.last)
-        before = _carried(before, plan.moved, np.ones(len(before.frames)))
-        offset = seam_offset(backwards(motion.track, rate), backwards(before, rate))
-        after = faded(after, offset, after.frames - span.last, span.blend_out)
-        shown = joined([rows(motion.track, slice(-1, None)), after])
-        blends.append(blend_report(shown, goal, into=False, rate=rate))
-    into = list(_blended_in(take, span, motion.track, rate))
-    if into:
-        shown = joined([*into, rows(motion.track, slice(1))])
-        goal = frames_until(take, span.first)
-        blends.insert(0, blend_report(shown, goal, into=True, rate=rate))
-    if rest is not None:
-        rest = _carried(rest, plan.moved, shares[count:])
-    return joined([*into, motion.track, after]), rest, tuple(blends)
-
-
-def _shares(
-    poses: Poses, later: Poses | None, plan: Plan, bodies: tuple[str, ...]
-) -> tuple[FloatArray, float]:
-    """Shares of the stance's move from the last adapted frame on, (T,), and how far the way back
-    makes standing feet slide, m."""
-    following = plan.body_frames >= plan.span.last
-    frames = np.concatenate([plan.body_frames[following], plan.rest_frames])
-    if plan.back is None:
-        return np.ones(len(frames)), 0.0
-    assert plan.moved is not None
-    places = [_places(poses, bodies)[following]]
-    if later is not None:
-        places.append(_places(later, bodies))
-    whole = np.concatenate(places) * metres_per_unit(current_scene())
-    shares = shares_of_return(frames, whole, plan.span.last, plan.back)
-    return shares, slid(whole, plan.moved, shares)
-
-
 def _with_slides(
     copy: _Copy, was: Poses, blends: tuple[BlendReport, ...], feet: tuple[str, ...]
 ) -> Incremental[tuple[BlendReport, ...]]:
@@ -375,39 +307,10 @@ def _with_slides(
             told.append(blend)
             continue
         poses = yield from sample_incrementally(copy.armature, every[inside], copy.showing)
-        take = metres * _places(was, feet)[inside]
+        take = metres * places_of(was, feet)[inside]
         if not blend.into:
             take = carried_points(take, plan.moved)
-        slides = slid_in_blend(take, metres * _places(poses, feet), 1.0 / rate)
+        slides = slid_in_blend(take, metres * places_of(poses, feet), 1.0 / rate)
         worst = int(slides.argmax())
         told.append(replace(blend, slide_m=float(slides[worst]), slide_bone=feet[worst]))
     return tuple(told)
-
-
-def _places(poses: Poses, bodies: tuple[str, ...]) -> FloatArray:
-    """(T, B, 3) heads of bodies in the world."""
-    columns = [poses.bones.index(body) for body in bodies]
-    heads = poses.object_to_world[:, None] @ poses.matrices[:, columns, :, 3:]
-    return np.asarray(heads[..., :3, 0])
-
-
-def _carried(track: PoseTrack, move: StanceMove | None, shares: FloatArray) -> PoseTrack:
-    return track if move is None else carried(track, move, shares)
-
-
-def _blended_in(
-    take: PoseTrack, span: ResultSpan, motion: PoseTrack, rate: float
-) -> Iterator[PoseTrack]:
-    before = rows(take, take.frames < span.first)
-    if len(before.frames):
-        adapted = frames_from(take, span.first)
-        offset = seam_offset(beginning(motion, rate), beginning(adapted, rate))
-        yield faded(before, offset, span.first - before.frames, span.blend_in)
-
-
-def _take_of(poses: Poses, bones: tuple[str, ...], frames: FloatArray) -> PoseTrack:
-    """The take's poses as a track: world, m."""
-    world = poses.object_to_world[:, None] @ poses.matrices
-    columns = [poses.bones.index(bone) for bone in bones]
-    heads = world[:, columns[0], :3, 3] * metres_per_unit(current_scene())
-    return PoseTrack(frames, bones, proper(world[:, columns, :3, :3]), heads)

@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...solver.arrays import BoolArray, FloatArray
-from ...solver.data.recording import PoseTrack
-from ...solver.data.reports.keys import BlendReport
-from ...solver.numerics.rotations import rotation_matrix, rotation_vector
+from ....solver.arrays import BoolArray, FloatArray
+from ....solver.data.recording import PoseTrack
+from ....solver.data.reports.keys import BlendReport
+from ....solver.numerics.rotations import rotation_matrix, rotation_vector
 
 # Over which the speed at a seam is taken: short against a step, and of 120 Hz seven frames, so that
 # one that jumps in the recording does not throw the blend.

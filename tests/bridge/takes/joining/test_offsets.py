@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hangtime.bridge.takes.offsets import beginning, faded, seam_offset
+from hangtime.bridge.takes.joining.offsets import beginning, faded, seam_offset
 from hangtime.solver.data.recording import PoseTrack
 
 RATE = 120.0

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...solver.arrays import FloatArray
-from ...solver.data.recording import PoseTrack
-from ...solver.data.stance_move import StanceMove
-from ...solver.numerics.rotations import axis_rotation
+from ....solver.arrays import FloatArray
+from ....solver.data.recording import PoseTrack
+from ....solver.data.stance_move import StanceMove
+from ....solver.numerics.rotations import axis_rotation
 
 _STANDS = 0.2  # m/s, of a foot in the take; noise moves those that stand by as much
 _STANDING = 0.02  # of the mean speed, which the way back also has while something stands

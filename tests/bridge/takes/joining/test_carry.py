@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hangtime.bridge.takes.carry import shares_of_return, slid
+from hangtime.bridge.takes.joining.carry import shares_of_return, slid
 from hangtime.solver.data.stance_move import StanceMove
 
 FRAMES = np.arange(101.0)
