@@ -10,7 +10,8 @@ from bpy.app.handlers import persistent
 from ..bridge import worker_client
 from ..bridge.accessors import present
 from ..bridge.app_handlers import add_handler
-from ..bridge.properties import settings, stances
+from ..bridge.properties import stances
+from ..bridge.properties.attached_groups import CLASSES as GROUP_CLASSES
 from ..bridge.properties.attached_groups import attach_groups, release_groups
 from ..bridge.properties.deleted_objects import leave_out_of_files
 from ..bridge.takes.takes import adopt_copied_slots
@@ -63,7 +64,7 @@ MODULES = (
 
 def classes() -> Iterator[type]:
     """All that Blender is to know: the settings, and what the modules define under a bl_idname."""
-    yield from settings.CLASSES
+    yield from GROUP_CLASSES
     for module in MODULES:
         for each in vars(module).values():
             own = isinstance(each, type) and each.__module__ == module.__name__

@@ -32,14 +32,7 @@ from ..repairs.analysis_key import analysis_key, span_of
 from ..repairs.stored import applied, of_recording, unreadable
 from ..repairs.unreadable import require_readable
 from ..rows.copying import rows_named
-from ..rows.held_contacts import (
-    UNMOVED,
-    Displacement,
-    HeldContact,
-    found_again,
-    frame_of,
-    movers,
-)
+from ..rows.held_contacts import UNMOVED, Displacement, HeldContact, found_again, frame_of, movers
 from ..rows.phases import listed, phases_of, unseen_frames
 from ..rows.protocols import ContactRow
 from ..scene.members import ground_members, present_members

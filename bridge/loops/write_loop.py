@@ -23,12 +23,7 @@ from ..armature.poses import Poses, metres_per_unit
 from ..armature.steady_joints import steady_bases
 from ..armature.write import remove_other_rotations, rotation_channel
 from ..companions.found import Companions, found_companions, holders_of
-from ..controls.control_rig import (
-    ControlRig,
-    control_poses,
-    found_controls,
-    shifts_of_carriers,
-)
+from ..controls.control_rig import ControlRig, control_poses, found_controls, shifts_of_carriers
 from ..controls.driven import is_driven
 from ..controls.missed.kept import KeptByControls, kept_by
 from ..controls.targets import targets_of

@@ -11,7 +11,8 @@ from ...solver.data.contacts import ContactSchedule
 from ..armature import fcurves
 from ..armature.incremental import Incremental
 from ..controls.driven import is_driven
-from ..properties.settings import action_settings, settings_of
+from ..properties.action import action_settings
+from ..properties.settings import settings_of
 from ..repairs.analysis_key import wanted_range
 from ..rows.choices import BodyKind
 from ..takes.options import loop_options

@@ -7,9 +7,44 @@ from bpy.app.handlers import persistent
 
 from ..accessors import ATTRIBUTE, attached, snapshot
 from ..app_handlers import add_handler
+from ..rows.finding import CLASSES as FINDING_CLASSES
+from ..rows.row import CLASSES as ROW_CLASSES
+from ..rows.row import HangtimeBoneMark
+from .action import HangtimeAction, HangtimeAskedFor
+from .body_change import CLASSES as BODY_CHANGE_CLASSES
+from .constraint import CLASSES as CONSTRAINT_CLASSES
+from .contact import CLASSES as CONTACT_CLASSES
+from .options.keys import CLASSES as KEYS_CLASSES
+from .options.loop import CLASSES as LOOP_CLASSES
+from .options.result import CLASSES as RESULT_CLASSES
 from .overridden_lists import settle_lists
-from .settings import CARRIERS, CLASSES
+from .settings import HangtimePart, HangtimeScene, HangtimeSettings
+from .surface import CLASSES as SURFACE_CLASSES
+from .view import CLASSES as VIEW_CLASSES
 
+CLASSES = (
+    *ROW_CLASSES,
+    *CONSTRAINT_CLASSES,
+    *BODY_CHANGE_CLASSES,
+    *SURFACE_CLASSES,
+    *VIEW_CLASSES,
+    *RESULT_CLASSES,
+    *KEYS_CLASSES,
+    *LOOP_CLASSES,
+    HangtimePart,
+    *FINDING_CLASSES,
+    *CONTACT_CLASSES,
+    HangtimeSettings,
+    HangtimeScene,
+    HangtimeAskedFor,
+    HangtimeAction,
+)
+CARRIERS = {
+    bpy.types.Scene: HangtimeScene,
+    bpy.types.Object: HangtimeSettings,
+    bpy.types.Action: HangtimeAction,
+    bpy.types.Bone: HangtimeBoneMark,
+}
 _ensured = ExitStack()  # what takes back what `ensure_groups` did
 
 

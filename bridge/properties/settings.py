@@ -1,4 +1,4 @@
-"""What the extension stores in the artist's file: on the scene, on armatures and on actions.
+"""What the extension stores in the artist's file: on the scene and on armatures.
 
 Lengths are in Blender units, world; frames are the scene's; angles in rad.
 """
@@ -6,45 +6,25 @@ Lengths are in Blender units, world; frames are the scene's; angles in rad.
 from __future__ import annotations
 
 from math import pi
-from typing import cast
 
 import bpy
 
 from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.problem import MassTable
 from ...solver.data.solver_options import ShapeSource
-from ..accessors import attached, called
-from ..fake_users import guard
+from ..accessors import attached
 from ..rows.choices import Moves
-from ..rows.finding import CLASSES as FINDING_CLASSES
 from ..rows.finding import HangtimeFinding
-from ..rows.row import CLASSES as ROW_CLASSES
-from ..rows.row import (
-    HIDDEN,
-    OVERRIDABLE,
-    OVERRIDABLE_LIST,
-    HangtimeBoneMark,
-    chosen,
-    declared,
-    hidden,
-)
+from ..rows.row import HIDDEN, OVERRIDABLE, OVERRIDABLE_LIST, chosen, declared, hidden
 from ..rows.stored import angle, boolean, choice, number, target, text, vector, whole
 from . import stances
-from .body_change import CLASSES as BODY_CHANGE_CLASSES
 from .body_change import HangtimeBodyChange
-from .constraint import CLASSES as CONSTRAINT_CLASSES
 from .constraint import HangtimeConstraint
-from .contact import CLASSES as CONTACT_CLASSES
 from .contact import HangtimeContact, HangtimeStance
-from .keys import CLASSES as KEYS_CLASSES
-from .keys import HangtimeKeys
-from .loop import CLASSES as LOOP_CLASSES
-from .loop import HangtimeLoop
-from .result import CLASSES as RESULT_CLASSES
-from .result import HangtimeResultOptions
-from .surface import CLASSES as SURFACE_CLASSES
+from .options.keys import HangtimeKeys
+from .options.loop import HangtimeLoop
+from .options.result import HangtimeResultOptions
 from .surface import HangtimeSurface
-from .view import CLASSES as VIEW_CLASSES
 from .view import HangtimeView
 
 _TABLES = {
@@ -334,68 +314,6 @@ class HangtimeScene(bpy.types.PropertyGroup):
     lengthened_to: declared(whole(), options=HIDDEN)  # by them
 
 
-class HangtimeAskedFor(bpy.types.PropertyGroup):
-    """A data-block that settings point to."""
-
-    target: declared(target(type=bpy.types.ID), options=HIDDEN)
-
-
-def _get_called(made: HangtimeAction) -> str:
-    return called(cast(bpy.types.Action, made.id_data))
-
-
-def _set_called(made: HangtimeAction, to: str) -> None:
-    action = cast(bpy.types.Action, made.id_data)
-    if to not in ("", _get_called(made)) and action.is_editable:  # a linked one keeps its name
-        action.name = to
-        if made.own_key:  # who names a result means to keep it
-            guard(action)
-
-
-class HangtimeAction(bpy.types.PropertyGroup):
-    """Of an adapted action: the take that it was made from, how, and what was found.
-
-    unfilled: of a recording into which missing frames were put, the one without.
-    maker: the armature whose settings asked for it. owned: whether there was one, who may be
-    deleted; earlier versions did not keep it. count: how many results there were, itself
-    included, when it was made. edit: what was asked for, and the artist's changes to that since.
-    next_edit: of a take from which nothing is made yet. asked_key, take_key, own_key: digests of
-    the settings, of the take's keys and of its own when it was made. asked_targets: the data-blocks
-    that the settings pointed to then. surfaces_key: digest of the surfaces then; empty where an
-    earlier version kept none. conditions: what else its physics depended on then
-    (`Conditions`, as text), likewise. spans: the frames of all adaptations that it holds.
-    """
-
-    called: declared(text("Name", get=_get_called, set=_set_called), options=HIDDEN)
-
-    recording: declared(target(type=bpy.types.Action), options=HIDDEN)
-    unfilled: declared(target(type=bpy.types.Action), options=HIDDEN)
-    maker: declared(target(), options=HIDDEN)
-    owned: declared(boolean(), options=HIDDEN)
-    count: declared(whole(), options=HIDDEN)
-    edit: bpy.props.PointerProperty(type=HangtimeSettings, options=HIDDEN)
-    next_edit: bpy.props.PointerProperty(type=HangtimeSettings, options=HIDDEN)
-    asked_key: declared(text(), options=HIDDEN)
-    asked_targets: bpy.props.CollectionProperty(type=HangtimeAskedFor, options=HIDDEN)
-    surfaces_key: declared(text(), options=HIDDEN)
-    conditions: declared(text(), options=HIDDEN)
-    take_key: declared(text(), options=HIDDEN)
-    own_key: declared(text(), options=HIDDEN)
-    spans: declared(text(), options=HIDDEN)
-    warning: declared(text(), options=HIDDEN)  # what is beyond reason in it: lines
-    stale: declared(text(), options=HIDDEN)  # why it is not what would be made now
-    polished: declared(boolean(), options=HIDDEN)  # edited by hand
-    holds_polish: declared(boolean(), options=HIDDEN)  # not since, but of the one before it
-    refined: declared(boolean(), options=HIDDEN)  # by Refine, whose weights are of its edit
-    performer: declared(target(), options=HIDDEN)  # of other limbs; none: who has the recording
-    accepted: declared(boolean(), options=HIDDEN)
-    lengthens: declared(boolean(), options=HIDDEN)  # the scene, which goes to its end
-    report: declared(text(), options=HIDDEN)  # the report's text
-    times: declared(text(), options=HIDDEN)  # its time map: recorded frames, adapted frames
-    overlaps: declared(text(), options=HIDDEN)  # what is in what: of the recording, of itself
-    known_contacts: declared(text(), options=HIDDEN)  # of the frames that adaptations wrote
-
-
 def settings_of(armature: bpy.types.Object) -> HangtimeSettings:
     """The edit that an armature carries, or what an empty marks."""
     settings: HangtimeSettings = attached(armature)
@@ -406,34 +324,3 @@ def scene_settings(scene: bpy.types.Scene | None) -> HangtimeScene:
     """Of `context.scene`, which the stubs leave optional."""
     settings: HangtimeScene = attached(scene)
     return settings
-
-
-def action_settings(action: bpy.types.Action) -> HangtimeAction:
-    """Of an adapted action; empty for others."""
-    settings: HangtimeAction = attached(action)
-    return settings
-
-
-CLASSES = (
-    *ROW_CLASSES,
-    *CONSTRAINT_CLASSES,
-    *BODY_CHANGE_CLASSES,
-    *SURFACE_CLASSES,
-    *VIEW_CLASSES,
-    *RESULT_CLASSES,
-    *KEYS_CLASSES,
-    *LOOP_CLASSES,
-    HangtimePart,
-    *FINDING_CLASSES,
-    *CONTACT_CLASSES,
-    HangtimeSettings,
-    HangtimeScene,
-    HangtimeAskedFor,
-    HangtimeAction,
-)
-CARRIERS = {
-    bpy.types.Scene: HangtimeScene,
-    bpy.types.Object: HangtimeSettings,
-    bpy.types.Action: HangtimeAction,
-    bpy.types.Bone: HangtimeBoneMark,
-}

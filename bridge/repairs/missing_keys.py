@@ -18,7 +18,8 @@ from ..armature import fcurves
 from ..armature.actions import recorded_action, show
 from ..fake_users import free_copy, guard, unguard
 from ..played_strips import played_strip
-from ..properties.settings import action_settings, settings_of
+from ..properties.action import action_settings
+from ..properties.settings import settings_of
 from ..takes.takes import results_from
 from .stored import FRAMES, findings, repairs_in
 

@@ -12,10 +12,11 @@ from ..accessors import current_action
 from ..armature import traces_store
 from ..armature.actions import recorded_action
 from ..hidden_texts import HiddenText
+from ..properties.action import action_settings
 from ..properties.of_actions.known_contacts import KNOWN
 from ..properties.of_actions.shown_overlaps import OVERLAPS
 from ..properties.of_actions.shown_times import TIMES
-from ..properties.settings import action_settings, settings_of
+from ..properties.settings import settings_of
 from ..rows.phases import UNSEEN
 from ..takes.takes import SPANS
 from ..unkeyed import UNKEYED

@@ -7,7 +7,8 @@ import bpy
 
 from ..accessors import play_to_end, root_of, shown_range, source_of
 from ..action_slots import lost_slot
-from ..properties.settings import action_settings, scene_settings
+from ..properties.action import action_settings
+from ..properties.settings import scene_settings
 
 
 def play_longer(

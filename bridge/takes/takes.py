@@ -24,13 +24,9 @@ from ..armature.traces_store import forget, put_by, take_up
 from ..fake_users import guard
 from ..hidden_texts import spans_text
 from ..marked_strips import MARKS
+from ..properties.action import HangtimeAction, action_settings
 from ..properties.overridden_lists import linked_count
-from ..properties.settings import (
-    HangtimeAction,
-    HangtimeSettings,
-    action_settings,
-    settings_of,
-)
+from ..properties.settings import HangtimeSettings, settings_of
 from ..properties.stances import move_empties
 from ..rows.choices import Span
 from ..rows.copying import (

@@ -23,12 +23,7 @@ from ..armature.poses import Poses, frames_per_second, metres_per_unit
 from ..armature.steady_joints import steady_bases
 from ..companions.found import Companions, found_companions, holders_of
 from ..companions.moves import differs, following_bases, root_basis
-from ..controls.control_rig import (
-    ControlRig,
-    carried_controls,
-    control_poses,
-    found_controls,
-)
+from ..controls.control_rig import ControlRig, carried_controls, control_poses, found_controls
 from ..controls.driven import is_driven
 from ..controls.missed.kept import kept_by
 from ..controls.targets import targets_of

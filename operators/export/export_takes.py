@@ -9,7 +9,8 @@ from ...bridge.exports.engines import ENDINGS, format_of
 from ...bridge.exports.export import export_takes
 from ...bridge.exports.writers import usd_name
 from ...bridge.libraries import lost_character
-from ...bridge.properties.settings import action_settings, settings_of
+from ...bridge.properties.action import action_settings
+from ...bridge.properties.settings import settings_of
 from ...bridge.recipe.export import ExportOptions
 from ...bridge.rows.choices import Engine, FileFormat, RootMotion
 from ...bridge.takes.takes import bake_shown, takes_of, unphysical_since

@@ -5,10 +5,7 @@ from dataclasses import replace
 import bpy
 
 from ...bridge.accessors import present
-from ...bridge.armature.actions import (
-    read_recorded_incrementally,
-    showing_recorded,
-)
+from ...bridge.armature.actions import read_recorded_incrementally, showing_recorded
 from ...bridge.armature.incremental import Incremental
 from ...bridge.armature.read import last_keyed
 from ...bridge.constraints.bone_mapping import chosen_parts
@@ -17,9 +14,7 @@ from ...bridge.constraints.motion_problem import problem_of
 from ...bridge.controls.driven import beside_keys, turned_by_drivers
 from ...bridge.controls.missed.aimed import led_bones
 from ...bridge.controls.refusals import require_posable
-from ...bridge.loops.write_loop import (
-    root_bone,
-)
+from ...bridge.loops.write_loop import root_bone
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ...bridge.recipe.keys import require_every_frame
 from ...bridge.recipe.result import require_return_after, require_return_within
@@ -40,9 +35,7 @@ from ...bridge.rows.phases import listed
 from ...bridge.scene.moving_empties import take_places
 from ...bridge.takes.options import loop_options, result_options
 from ...bridge.takes.takes import AskedSettings
-from ...bridge.takes.write_result import (
-    require_slot,
-)
+from ...bridge.takes.write_result import require_slot
 from ...bridge.worker_client import shared
 from ...solver.body.anatomy import map_anatomy
 from ...solver.data.faults import (

@@ -14,12 +14,8 @@ from ...bridge.armature.played import wrong_speed
 from ...bridge.armature.traces_store import keep
 from ...bridge.constraints.bone_mapping import evidence_of, find_parts, missing_parts
 from ...bridge.constraints.motion_problem import problem_of, write_analysis
-from ...bridge.properties.settings import (
-    HangtimeSettings,
-    action_settings,
-    scene_settings,
-    settings_of,
-)
+from ...bridge.properties.action import action_settings
+from ...bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
 from ...bridge.properties.stances import active_contact
 from ...bridge.repairs.analysed_state import AnalysedState
 from ...bridge.repairs.analysis_key import analysis_is_of, span_of, wanted_range

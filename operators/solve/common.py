@@ -9,12 +9,8 @@ from ...bridge.action_slots import without_slot
 from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.played import why_no_action
 from ...bridge.libraries import lost_character, lost_file
-from ...bridge.properties.settings import (
-    HangtimeSettings,
-    action_settings,
-    scene_settings,
-    settings_of,
-)
+from ...bridge.properties.action import action_settings
+from ...bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
 from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault, NoArmature, NotInScene
 from ...solver.data.solver_options import Method, ObjectiveKind, SolverOptions

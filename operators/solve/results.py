@@ -8,7 +8,8 @@ from ...bridge.armature.actions import recorded_action, show
 from ...bridge.armature.played import why_no_action
 from ...bridge.armature.strips import strips_of
 from ...bridge.libraries import lost_file
-from ...bridge.properties.settings import action_settings, settings_of
+from ...bridge.properties.action import action_settings
+from ...bridge.properties.settings import settings_of
 from ...bridge.takes.takes import bake_shown, results_from, unphysical_since
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator

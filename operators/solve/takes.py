@@ -8,7 +8,8 @@ from ...bridge.armature.actions import recorded_action, show
 from ...bridge.armature.fcurves import bone_of
 from ...bridge.libraries import lost_file
 from ...bridge.polish.renewal import is_kept
-from ...bridge.properties.settings import action_settings, settings_of
+from ...bridge.properties.action import action_settings
+from ...bridge.properties.settings import settings_of
 from ...bridge.takes.options import loop_options
 from ...bridge.takes.takes import (
     look_again,

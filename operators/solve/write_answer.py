@@ -13,13 +13,11 @@ from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
 from ...bridge.controls.missed.aimed import without
 from ...bridge.files.reproportioned import build_reproportioned, in_new_axes
-from ...bridge.loops.write_loop import (
-    Loop,
-    write_loop_incrementally,
-)
+from ...bridge.loops.write_loop import Loop, write_loop_incrementally
 from ...bridge.polish.renewal import Renewal
+from ...bridge.properties.action import action_settings
 from ...bridge.properties.of_actions.known_contacts import SolvedContacts, keep_contacts
-from ...bridge.properties.settings import action_settings, settings_of
+from ...bridge.properties.settings import settings_of
 from ...bridge.recipe.result import require_return_after
 from ...bridge.repairs.analysed_state import AnalysedState
 from ...bridge.repairs.analysis_key import SAME_RATE
@@ -29,24 +27,10 @@ from ...bridge.scene.played_end import play_longer
 from ...bridge.takes.plan import AdaptedMotion
 from ...bridge.takes.span import ResultSpan
 from ...bridge.takes.take_time import TakeTime
-from ...bridge.takes.takes import (
-    adapted_spans,
-    derive,
-    free_name,
-    note_made,
-)
-from ...bridge.takes.write_result import (
-    combine,
-    lay_in_slot,
-    write_adapted_incrementally,
-)
+from ...bridge.takes.takes import adapted_spans, derive, free_name, note_made
+from ...bridge.takes.write_result import combine, lay_in_slot, write_adapted_incrementally
 from ...solver.body.proportions import changed_recording
-from ...solver.data.faults import (
-    ChangedMeanwhile,
-    EditedMeanwhile,
-    Fault,
-    RateChanged,
-)
+from ...solver.data.faults import ChangedMeanwhile, EditedMeanwhile, Fault, RateChanged
 from ...solver.data.recording import same_motion
 from ...solver.data.solver_options import Method
 from ...solver.worker.protocol import Adapted

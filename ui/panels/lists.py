@@ -4,9 +4,10 @@ import bpy
 
 from ...bridge.accessors import current_action, present
 from ...bridge.constraint_kinds import KINDS
+from ...bridge.properties.action import action_settings
 from ...bridge.properties.contact import HangtimeContact, HangtimeStance
 from ...bridge.properties.overridden_lists import linked_count
-from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
+from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ...bridge.properties.stances import active_stance, stance_contacts, stance_frames
 from ...bridge.properties.surface import HangtimeSurface
 from ...bridge.rows.choices import BodyKind, Met, SurfaceRole

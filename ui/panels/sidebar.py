@@ -3,7 +3,7 @@
 import bpy
 
 from ...bridge.accessors import present
-from ...bridge.properties.result import HangtimeResultOptions
+from ...bridge.properties.options.result import HangtimeResultOptions
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ...bridge.rows.kind import Icon, Row
 from ...operators.names import CATEGORY, OperatorId

@@ -3,7 +3,8 @@
 import bpy
 
 from ...bridge.accessors import current_action, present
-from ...bridge.properties.settings import action_settings, settings_of
+from ...bridge.properties.action import action_settings
+from ...bridge.properties.settings import settings_of
 from ...bridge.rows.choices import After
 from ...bridge.rows.kind import Icon
 from ...bridge.takes.takes import ListedTake, starts_from_result, takes_of

@@ -15,7 +15,7 @@ from ....solver.data.scene import SceneObject
 from ...accessors import ATTRIBUTE
 from ...hidden_texts import HiddenText, listed, number, word
 from ...played_strips import StripTime
-from ..settings import action_settings
+from ..action import action_settings
 
 Known = tuple[KnownContacts, ...]
 

@@ -10,7 +10,7 @@ import bpy
 
 from ....solver.data.reports.report import Report
 from ...hidden_texts import HiddenText, listed, number, word
-from ..settings import action_settings
+from ..action import action_settings
 
 IN = " in "  # between the names, as the solver calls what is in what
 

@@ -13,7 +13,7 @@ import numpy as np
 from ....solver.data.reports.jumps import TimeMap
 from ...accessors import current_action
 from ...hidden_texts import HiddenText, listed, number
-from ..settings import action_settings
+from ..action import action_settings
 
 
 def store_times(action: bpy.types.Action, times: TimeMap) -> None:

@@ -14,8 +14,9 @@ from .driver import Actions, Driver, Until
 from .screen import present, window_manager
 
 if TYPE_CHECKING:  # the Blender with the window sees devtools and the installed zip alone
+    from ....bridge.properties.action import HangtimeAction
     from ....bridge.properties.contact import HangtimeStance
-    from ....bridge.properties.settings import HangtimeAction, HangtimeScene, HangtimeSettings
+    from ....bridge.properties.settings import HangtimeScene, HangtimeSettings
     from ....operators.solve.solving import Solving
 
 PACKAGE = "bl_ext.user_default.hangtime"

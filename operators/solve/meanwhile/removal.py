@@ -6,7 +6,8 @@ from ....bridge.accessors import armature_data, current_action, present, source_
 from ....bridge.armature.actions import show
 from ....bridge.armature.strips import remove_strips
 from ....bridge.fake_users import unguard
-from ....bridge.properties.settings import action_settings, settings_of
+from ....bridge.properties.action import action_settings
+from ....bridge.properties.settings import settings_of
 from ....bridge.scene.played_end import play_what_is_left
 from ....bridge.takes.takes import results_from
 from ....bridge.takes.write_result import remove_slot

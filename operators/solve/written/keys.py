@@ -13,7 +13,8 @@ from ....bridge.controls.control_rig import ControlRig
 from ....bridge.keys.contact_marks import limb_contacts, write_contact_channels, write_markers
 from ....bridge.keys.events import events_of
 from ....bridge.keys.written import KeyedAction, choose_keys
-from ....bridge.properties.settings import HangtimeSettings, action_settings, settings_of
+from ....bridge.properties.action import action_settings
+from ....bridge.properties.settings import HangtimeSettings, settings_of
 from ....bridge.recipe.keys import KeyOptions
 from ....bridge.recipe.result import ResultOptions
 from ....bridge.rows.choices import KeyChoice

@@ -15,9 +15,10 @@ from ....bridge.controls.missed.held import held_bones
 from ....bridge.controls.missed.kept import KeptByControls
 from ....bridge.polish.pins import MovedPin
 from ....bridge.polish.renewal import Renewal
+from ....bridge.properties.action import action_settings
 from ....bridge.properties.of_actions.shown_overlaps import store_overlaps
 from ....bridge.properties.of_actions.shown_times import store_times
-from ....bridge.properties.settings import action_settings, settings_of
+from ....bridge.properties.settings import settings_of
 from ....bridge.rows.phases import roles_in
 from ....solver.body.character import build_character
 from ....solver.data.problem import MotionProblem

@@ -9,9 +9,9 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 from hangtime.bridge.accessors import current_action
 from hangtime.bridge.armature.actions import recorded_action
 from hangtime.bridge.armature.traces_store import kept
+from hangtime.bridge.properties.action import action_settings
 from hangtime.bridge.properties.of_actions.shown_overlaps import shown_overlaps
 from hangtime.bridge.properties.of_actions.shown_times import recorded_frame
-from hangtime.bridge.properties.settings import action_settings
 from hangtime.bridge.repairs.stored import findings, foot_faults
 from hangtime.bridge.repairs.unreadable import unreadable_texts
 from hangtime.bridge.rows.phases import phases_of

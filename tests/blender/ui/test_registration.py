@@ -15,8 +15,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 import hangtime
 from hangtime.bridge import worker_client
 from hangtime.bridge.accessors import ATTRIBUTE
-from hangtime.bridge.properties import settings
-from hangtime.bridge.properties.attached_groups import ensure_groups
+from hangtime.bridge.properties.attached_groups import CARRIERS, ensure_groups
 from hangtime.operators.names import OperatorId
 from hangtime.tests.blender.helpers import rigs
 from hangtime.ui import registration
@@ -98,7 +97,7 @@ def test_registering_five_times_leaves_nothing_behind(monkeypatch: pytest.Monkey
         assert names_in_blender() == set()
         assert commands == []
         assert handlers() == before
-        for carrier in settings.CARRIERS:
+        for carrier in CARRIERS:
             assert not hasattr(carrier, ATTRIBUTE)
 
 

@@ -5,12 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from hangtime.solver.contacts.events import numbered, snap
-from hangtime.solver.data.contacts import (
-    Contact,
-    ContactSchedule,
-    Interval,
-    PhaseKind,
-)
+from hangtime.solver.data.contacts import Contact, ContactSchedule, Interval, PhaseKind
 from hypothesis import given
 from hypothesis import strategies as st
 

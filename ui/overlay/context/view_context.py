@@ -12,14 +12,10 @@ from numpy.typing import NDArray
 from ....bridge.accessors import armature_data, current_action, pose_of, present, snapshot
 from ....bridge.armature.poses import frames_per_second, metres_per_unit
 from ....bridge.armature.traces_store import StoredTraces, kept
+from ....bridge.properties.action import action_settings
 from ....bridge.properties.constraint import HangtimeConstraint
 from ....bridge.properties.of_actions.shown_times import recorded_frame
-from ....bridge.properties.settings import (
-    HangtimeSettings,
-    action_settings,
-    scene_settings,
-    settings_of,
-)
+from ....bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
 from ....bridge.properties.view import HangtimeView
 from ....bridge.rows.choices import Span
 from ....bridge.rows.times import Frames, Spans, interval_of, named_frames

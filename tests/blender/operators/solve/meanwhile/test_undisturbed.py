@@ -15,7 +15,7 @@ from hangtime.bridge.accessors import current_action, present
 from hangtime.bridge.app_handlers import add_handler
 from hangtime.bridge.armature.fcurves import holder_in, keys, slot_identifier
 from hangtime.bridge.armature.incremental import complete
-from hangtime.bridge.properties.settings import action_settings
+from hangtime.bridge.properties.action import action_settings
 from hangtime.bridge.rows.choices import WrittenAs
 from hangtime.bridge.worker_client import shared
 from hangtime.operators.solve.adapt import ask_for

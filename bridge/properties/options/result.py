@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import bpy
 
-from ..rows.choices import After, ContactMarkers, WrittenAs
-from ..rows.row import OVERRIDABLE, chosen
-from ..rows.stored import boolean, whole
+from ...rows.choices import After, ContactMarkers, WrittenAs
+from ...rows.row import OVERRIDABLE, chosen
+from ...rows.stored import boolean, whole
 
 
 class HangtimeResultOptions(bpy.types.PropertyGroup):

@@ -6,9 +6,9 @@ from math import radians
 
 import bpy
 
-from ..rows.choices import KeyChoice
-from ..rows.row import OVERRIDABLE, chosen
-from ..rows.stored import angle, number
+from ...rows.choices import KeyChoice
+from ...rows.row import OVERRIDABLE, chosen
+from ...rows.stored import angle, number
 
 _LABELS = {
     KeyChoice.EVERY_FRAME: ("Every Frame", "A key on every frame: exactly what was solved"),

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import bpy
 
-from ..rows.choices import LoopRoot
-from ..rows.row import OVERRIDABLE, chosen
-from ..rows.stored import boolean
+from ...rows.choices import LoopRoot
+from ...rows.row import OVERRIDABLE, chosen
+from ...rows.stored import boolean
 
 _LABELS = {
     LoopRoot.HIPS: ("Hips", "The hips travel; each repetition goes on from where the last ended"),
