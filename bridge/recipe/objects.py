@@ -29,7 +29,12 @@ import numpy as np
 
 from ...solver.analysis.analyse import Analysis
 from ...solver.analysis.performance import above_ground
-from ...solver.analysis.pinned_places import chosen_contacts, phase_of, pinned_places, travel_axes
+from ...solver.analysis.pins.pinned_places import (
+    chosen_contacts,
+    phase_of,
+    pinned_places,
+    travel_axes,
+)
 from ...solver.arrays import FloatArray, IntArray
 from ...solver.data.contacts import Phase, PhaseKind
 from ...solver.data.faults import NoFaceThere, UnknownPhaseIn

@@ -11,7 +11,7 @@ from enum import Enum
 
 import numpy as np
 
-from ...solver.analysis.pinned_places import chosen_contacts, phase_of
+from ...solver.analysis.pins.pinned_places import chosen_contacts, phase_of
 from ...solver.arrays import FloatArray, IntArray
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from ...solver.analysis.grounding import Stray, strays
 from ...solver.analysis.leaps import Leap, Stand, leaps
-from ...solver.analysis.pinned_places import backward_stances, pinned_places
+from ...solver.analysis.pins.pinned_places import backward_stances, pinned_places
 from ...solver.data.contacts import Contact
 from ...solver.data.faults import Fault
 from ...solver.data.problem import MotionProblem

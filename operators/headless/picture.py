@@ -13,7 +13,7 @@ from ...bridge.picture.layout import RAISED, canvas_axes
 from ...bridge.picture.render import draw_sheet
 from ...bridge.picture.sheet import Limb, SheetRow, View
 from ...solver.analysis.performance import above_ground
-from ...solver.analysis.pinned_places import facing
+from ...solver.analysis.pins.pinned_places import facing
 from ...solver.arrays import FloatArray
 from ...solver.body.anatomy import Part
 from ...solver.body.character import Character

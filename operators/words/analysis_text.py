@@ -10,7 +10,7 @@ from ...bridge.recipe.object_texts import object_text, support_texts
 from ...bridge.recipe.recording import FILE, RECORDING, FileReading
 from ...bridge.recipe_syntax.toml_text import sections
 from ...solver.analysis.analyse import Analysis
-from ...solver.analysis.pinned_places import backward_stances
+from ...solver.analysis.pins.pinned_places import backward_stances
 from ...solver.contacts.footfalls import footfalls, takes_steps
 from ...solver.data.contacts import Contact, Phase, PhaseKind
 from ...solver.data.faults import OffBalance, UnseenSupport

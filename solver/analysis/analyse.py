@@ -8,62 +8,24 @@ adaptation = adapt(fitted, problem)
 track = adaptation.motion.track(analysis.performance.recording)
 """
 
-from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import BoolArray
 from ..body.character import Character, build_character
-from ..contacts.events import numbered, snap
-from ..data.contacts import Contact, ContactSchedule, Interval, PointKind
-from ..data.faults import (
-    BadTiming,
-    BesideFrames,
-    CarriedBy,
-    ClipTooShort,
-    FramesFarApart,
-    FramesReversed,
-    OffBalance,
-    Treadmill,
-    UnknownContactName,
-    UnseenSupport,
-)
-from ..data.problem import AddedContact, MotionProblem, Unseen
+from ..contacts.events import numbered
+from ..data.contacts import ContactSchedule
+from ..data.faults import CarriedBy, ClipTooShort, FramesFarApart, FramesReversed
+from ..data.problem import MotionProblem, Unseen
 from ..data.recording import MIN_CLIP_DURATION, Recording, Skin
-from ..data.scene import SupportBox
-from ..numerics.runs import runs
-from ..scene.belt import belt_speed
-from ..scene.fall_rate import fitting_rate, is_pulled_down
-from ..scene.support import boxes_beneath
 from ..unseen.free_fall import falls_beside_unseen, unseen_support
-from .balance import (
-    SURELY_LASTS,
-    lasting,
-    low_palms,
-    off_balance,
-    palms_at_rest,
-    pelvis_at_rest,
-    touches_during,
-)
+from .carried_by import unseen_carriers, weight_beside
+from .corrections import corrected
 from .grounding import disjoint, foot_sized, grounded, parted
-from .performance import (
-    Performance,
-    contact_points,
-    find_contacts,
-    leans,
-    low_feet,
-    perform,
-    snap_tolerance,
-)
+from .performance import Performance, find_contacts, perform
 from .take import take_of
 
 ROUNDING = 1e-6  # of a frame's time
-MOST = 2.0 / 3.0  # of the time in the air, in which the body falls at another rate than the scene's
-LEANING_SHARE = 0.2  # of a gap, in which hands or knees on the floor may be what carries the body
-LOW_SHARE = 0.9  # of a gap, in which a foot or hand on the floor touches all the same
-SKIDS = 0.03  # m, to either side, of a foot on the floor; one that stands rolls and turns by less
 MAX_FRAME_TIME = 0.125  # s: the flight of a small hop, a quarter second, has two frames then
 
 
@@ -96,8 +58,8 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     found = disjoint(parted(touching))
     skids = [each for each in found.unseen if each not in touching.unseen]
     found = replace(found, contacts=numbered(found.contacts))
-    corrected = disjoint(_corrected(found, problem, performance))
-    standing = foot_sized(corrected, performance, problem.scene)
+    changed = disjoint(corrected(found, problem, performance))
+    standing = foot_sized(changed, performance, problem.scene)
     schedule = grounded(standing, performance, problem.scene)
     known = performance.take
     unseen = unseen_support(
@@ -109,10 +71,10 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
         falls_beside_unseen(touching),
     )
     schedule = replace(schedule, unseen=unseen)
-    told = tuple(_told(performance, schedule, skids))
+    told = tuple(unseen_carriers(performance, schedule, skids))
     if told and problem.unseen is Unseen.REFUSE:
         raise told[0]
-    return Analysis(performance, schedule, (*told, *_off_balance(performance, schedule)))
+    return Analysis(performance, schedule, (*told, *weight_beside(performance, schedule)))
 
 
 def _performed(
@@ -136,177 +98,6 @@ def part_of(analysis: Analysis, start: float, end: float) -> Analysis:
     within = whole.recording.window(float(frames[some[0]]), float(frames[some[-1]]))
     performance = _performed(whole.take.recording, within, whole.character, whole.skin)
     return Analysis(performance, schedule.part(float(times[some[0]]), float(times[some[-1]])))
-
-
-def _told(
-    performance: Performance, schedule: ContactSchedule, skids: Sequence[Interval]
-) -> Iterator[UnseenSupport | Treadmill]:
-    """What is known of each interval in which something unseen carries the body.
-
-    skids: in which feet go from place to place under load.
-    """
-    if not schedule.unseen:
-        return
-    points, floor_m = contact_points(performance)
-    if speed := belt_speed(performance.times, points):
-        yield Treadmill(speed)
-        return
-    recording = performance.recording
-    agreed = agreed_rate(performance, schedule)
-    low, slid = (each(performance, schedule.unseen) for each in (_on_floor, skids_in))
-    for gap in schedule.unseen:
-        first, last = _frame(recording, gap.start), _frame(recording, gap.end)
-        if any(skid.start <= gap.start and gap.end <= skid.end for skid in skids):
-            yield UnseenSupport(first, last, skidding=True)
-            continue
-        rate = agreed if _fitting_rate(performance, gap, floor_m) == agreed else None
-        boxes: tuple[SupportBox, ...] = ()
-        hands: tuple[AddedContact, ...] = ()
-        leaning = _leans(performance, gap, floor_m)
-        if leaning:
-            hands = _hands(performance, schedule, gap, low_palms(performance))
-        elif rate is None:
-            boxes = boxes_beneath(performance.times, points, gap, floor_m)
-        on_floor = rate is None and not boxes and gap in low
-        yield UnseenSupport(
-            *(first, last, boxes, hands, rate, recording.rate),
-            leaning=leaning,
-            skidding=on_floor and gap in slid,
-            resting=on_floor and gap not in slid,
-        )
-
-
-def _off_balance(performance: Performance, schedule: ContactSchedule) -> Iterator[OffBalance]:
-    """Where the weight is beside what touches for so long that it is no fault of the capture: on
-    hands, with their contacts, and else, with when the pelvis rests. Who sits on the floor has
-    hands on it that carry little."""
-    found = off_balance(performance, schedule, SURELY_LASTS)
-    palms = palms_at_rest(performance)
-    still, low = pelvis_at_rest(performance)
-
-    def hands(gap: Interval) -> tuple[AddedContact, ...]:
-        sits = (still & low)[_inside(performance, gap)].mean() > LEANING_SHARE
-        return () if sits else _hands(performance, schedule, gap, palms)
-
-    added = {gap: hands(gap) for gap in found}
-    leaning, others = ([gap for gap in found if bool(added[gap]) is on] for on in (True, False))
-    if leaning:
-        contacts = dict.fromkeys(contact for gap in leaning for contact in added[gap])
-        yield OffBalance(_spans(performance, leaning), tuple(contacts))
-    if others:
-        rests = [part for gap in others for part in lasting(performance, still, gap)]
-        yield OffBalance(_spans(performance, others), resting=_spans(performance, rests))
-
-
-def _spans(
-    performance: Performance, intervals: Iterable[Interval]
-) -> tuple[tuple[float, float], ...]:
-    """Scene frames."""
-    recording = performance.recording
-    return tuple((_frame(recording, each.start), _frame(recording, each.end)) for each in intervals)
-
-
-def _hands(
-    performance: Performance,
-    schedule: ContactSchedule,
-    gap: Interval,
-    down: Mapping[str, BoolArray],
-) -> tuple[AddedContact, ...]:
-    """The contacts of hands that would carry the body through a gap beside those that are known.
-    None where they do not last. down: (T,) by hand, when it is on the floor."""
-    times, frames = performance.times, performance.recording.frames
-    inside = _inside(performance, gap)
-    carried, found = np.zeros_like(inside), list[AddedContact]()
-    for name, low in down.items():
-        for first, last in runs(low & ~touches_during(times, schedule, name)):
-            run = slice(first, last + 1)
-            lasts = times[last] - times[first] >= PointKind.HAND.value.min_duration
-            if lasts and inside[run].any():
-                carried[run] = True
-                found.append(AddedContact(name, float(frames[first]), float(frames[last])))
-    return tuple(found) if carried[inside].mean() >= LOW_SHARE else ()
-
-
-def agreed_rate(performance: Performance, schedule: ContactSchedule) -> float | None:
-    """The frame rate at which the body falls most of the time in which nothing touches; None where
-    there is none: a clock that is wrong is so in every flight. At a true rate feet only push."""
-    seconds: defaultdict[float | None, float] = defaultdict(float)
-    for gap in schedule.unseen:
-        seconds[_fitting_rate(performance, gap, schedule.floor_m)] += gap.end - gap.start
-    aloft = sum(seconds.values()) + sum(flight.end - flight.start for flight in schedule.flights)
-    agreed = next((rate for rate, spent in seconds.items() if spent > MOST * aloft), None)
-    if agreed is None or _is_pulled_down(_played_at(performance, agreed)):
-        return None
-    return agreed
-
-
-def _played_at(performance: Performance, rate: float) -> Performance:
-    """The same frames at another rate, Hz, with which nothing is known of their contacts."""
-    slower = performance.recording.rate / rate
-    recording = replace(performance.recording, times=slower * performance.times, known=())
-    longer = performance.longer and _played_at(performance.longer, rate)
-    return replace(performance, recording=recording, longer=longer)
-
-
-def _is_pulled_down(performance: Performance) -> bool:
-    """Whether contacts, as they are found, would have to pull the body down."""
-    times, carried = performance.times, np.zeros(len(performance.times), bool)
-    for contact in find_contacts(performance).contacts:
-        carried |= (times >= contact.start) & (times <= contact.end)
-    return is_pulled_down(times, performance.com[:, 2], carried)
-
-
-def _fitting_rate(performance: Performance, gap: Interval, floor_m: float) -> float | None:
-    """The frame rate at which the body falls in a gap; None where that does not explain it."""
-    if _leans(performance, gap, floor_m):
-        return None
-    inside = _inside(performance, gap)
-    heights = performance.com[inside, 2]
-    return fitting_rate(performance.times[inside], heights, performance.recording.rate)
-
-
-def _leans(performance: Performance, gap: Interval, floor_m: float) -> bool:
-    """Whether another part of the body than a foot is on the floor in a good part of a gap, and may
-    carry it: a hand that sweeps past the floor for a frame carries nothing."""
-    leaning = leans(performance, floor_m)[_inside(performance, gap)]
-    return bool(leaning.size and leaning.mean() > LEANING_SHARE)
-
-
-def skids_in(performance: Performance, gaps: Sequence[Interval]) -> tuple[Interval, ...]:
-    """The gaps between contacts in which feet are on the floor and slide, rather than something
-    else carrying the body."""
-    points, floor_m = contact_points(performance)
-
-    def slides(gap: Interval) -> bool:
-        inside, ways = _inside(performance, gap), [0.0]
-        for point in points.values():
-            if point.kind.is_of_foot:
-                low = point.track[:, 2] - floor_m < point.max_height
-                places = point.track[inside & low, :2]
-                ways += np.ptp(places, axis=0).tolist() if len(places) else []
-        return max(ways) > SKIDS
-
-    return tuple(filter(slides, _on_floor(performance, gaps)))
-
-
-def _on_floor(performance: Performance, gaps: Sequence[Interval]) -> tuple[Interval, ...]:
-    """The gaps between contacts in which feet are on the floor, and no other part of the body: a
-    foot that swings past the floor is as low for a moment."""
-    if not gaps:
-        return ()
-    points, floor_m = contact_points(performance)
-    low = low_feet(points, floor_m)
-
-    def on_floor(gap: Interval) -> bool:
-        during = low[_inside(performance, gap)]
-        touching = bool(during.size and during.mean() >= LOW_SHARE)
-        return touching and not _leans(performance, gap, floor_m)
-
-    return tuple(filter(on_floor, gaps))
-
-
-def _inside(performance: Performance, gap: Interval) -> BoolArray:
-    return (performance.times >= gap.start) & (performance.times <= gap.end)
 
 
 def build_figure(recording: Recording, problem: MotionProblem) -> tuple[Recording, Character]:
@@ -343,58 +134,3 @@ def require_dense(recording: Recording, longest: float) -> None:
     apart = 1.0 / recording.rate
     if apart > longest * (1.0 + ROUNDING):
         raise FramesFarApart(apart, longest)
-
-
-def _frame(recording: Recording, time: float) -> float:
-    """Nearest scene frame of an instant, s."""
-    return float(round(recording.frames[0] + time * recording.rate))
-
-
-def _corrected(
-    schedule: ContactSchedule, problem: MotionProblem, performance: Performance
-) -> ContactSchedule:
-    """The schedule with the artist's corrections; unchanged contacts keep their exact instants.
-
-    Raises UnknownContactName, BadTiming, BesideFrames.
-    """
-    if not problem.contacts and not problem.added:
-        return schedule
-    contacts: dict[str, Contact] = {c.name: c for c in schedule.contacts}
-    first = float(performance.recording.frames[0])
-    rate = performance.recording.rate
-    for edit in problem.contacts:
-        if edit.name not in contacts:
-            raise UnknownContactName(edit.name, tuple(contacts))
-        contact = contacts[edit.name]
-        if edit.remove:
-            del contacts[edit.name]
-            continue
-        start, end = contact.start, contact.end
-        if edit.start_frame is not None:
-            start = (edit.start_frame - first) / rate
-        if edit.end_frame is not None:
-            end = (edit.end_frame - first) / rate
-        span = (max(start, 0.0), min(end, schedule.duration))
-        contacts[edit.name] = replace(contact, start=span[0], end=span[1])
-    every = [*contacts.values()]
-    for added in problem.added:
-        span = ((added.start_frame - first) / rate, (added.end_frame - first) / rate)
-        within = (max(span[0], 0.0), min(span[1], schedule.duration))
-        if within[0] > within[1] and span[0] <= span[1]:
-            beside = added.start_frame if span[0] > 0.0 else added.end_frame
-            raise BesideFrames(added.point, beside, *performance.recording.ends)
-        every.append(_added(added.point, within, performance))
-    return snap(replace(schedule, contacts=tuple(every)), snap_tolerance(performance))
-
-
-def _added(name: str, span: tuple[float, float], performance: Performance) -> Contact:
-    """Contact of a point during (start, end) s, at the point's mean position then."""
-    points, _ = contact_points(performance)
-    if name not in points:
-        raise UnknownContactName(name, tuple(points))
-    point = points[name]
-    during = (performance.times >= span[0]) & (performance.times <= span[1])
-    if not during.any():
-        raise BadTiming(name, span[1] - span[0])
-    place = point.track[during].mean(axis=0)
-    return Contact(name, name, point.bone, point.offset, *span, place)

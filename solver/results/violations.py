@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..analysis.pinned_places import chosen_contacts, phase_of
+from ..analysis.pins.pinned_places import chosen_contacts, phase_of
 from ..data.constants import STANDARD_GRAVITY
 from ..data.problem import MotionProblem
 from ..data.row_kinds import RowKind, Violation

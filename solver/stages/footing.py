@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..analysis.landing import Footing
-from ..analysis.pinned_places import chosen_contacts, phase_of, pinned_footing
+from ..analysis.pins.landing import Footing
+from ..analysis.pins.pinned_places import chosen_contacts, phase_of, pinned_footing
 from ..arrays import FloatArray
 from ..data.constants import UP
 from ..data.contacts import ContactSchedule

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..analysis.landing import Footing
-from ..analysis.pinned_places import chosen_contacts, phase_of
+from ..analysis.pins.landing import Footing
+from ..analysis.pins.pinned_places import chosen_contacts, phase_of
 from ..arrays import FloatArray
 from ..constraints.evaluation_context import EvaluationContext
 from ..data.contacts import ContactSchedule, Phase, PhaseKind

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-from ..analysis.pinned_places import pinned_by, travel_axes
+from ..analysis.pins.pinned_places import pinned_by, travel_axes
 from ..analysis.timeline import timeline
 from ..arrays import FloatArray
 from ..body.body_changes import changed_character, changed_points

@@ -12,7 +12,7 @@ what the recording was before.
 from collections.abc import Sequence
 
 from ..analysis.analyse import Analysis, part_of
-from ..analysis.pinned_places import phase_of
+from ..analysis.pins.pinned_places import phase_of
 from ..data.contacts import ContactSchedule, Phase, PhaseKind
 from ..data.problem import MotionProblem, Pin
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
-from ..analysis.pinned_places import chosen_contacts, phase_of
+from ..analysis.pins.pinned_places import chosen_contacts, phase_of
 from ..constraints.evaluation_context import touches
 from ..data.contacts import Contact, ContactSchedule, Phase, PhaseKind
 from ..data.faults import JoinedPhase, NothingTouches, PinLetGo, UnknownPhaseIn

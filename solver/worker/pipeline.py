@@ -17,18 +17,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..analysis.analyse import Analysis, analyse, build_figure
-from ..analysis.pinned_places import chosen_contacts, phase_of
+from ..analysis.pins.pinned_places import chosen_contacts, phase_of
 from ..body.inverse_dynamics import InverseDynamics
 from ..constraints.bone_names import check_bones
 from ..data.contacts import ContactSchedule, gaps
-from ..data.faults import (
-    NoFit,
-    NoSolution,
-    OffBalance,
-    Treadmill,
-    UnseenSupport,
-    computable,
-)
+from ..data.faults import NoFit, NoSolution, OffBalance, Treadmill, UnseenSupport, computable
 from ..data.loop import Cycle
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack, Recording

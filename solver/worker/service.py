@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from ..analysis.performance import perform
-from ..analysis.pinned_places import backward_stances, travel_axes
+from ..analysis.pins.pinned_places import backward_stances, travel_axes
 from ..body.character import build_character
 from ..data.faults import Fault, computable
 from ..data.problem import MotionProblem

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
 
-from ...analysis.analyse import agreed_rate
+from ...analysis.carried_by import agreed_rate
 from ...analysis.performance import Performance, find_contacts, perform
 from ...body.character import build_character
 from ...data.constants import STANDARD_GRAVITY

@@ -8,8 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...analysis.analyse import skids_in
 from ...analysis.balance import SURELY_LASTS, off_balance
+from ...analysis.carried_by import skids_in
 from ...analysis.performance import Performance, contact_points, find_contacts
 from ...arrays import FloatArray
 from ...contacts.noisy_touches import MAX_BREAK

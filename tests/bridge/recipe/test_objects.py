@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hangtime.bridge.recipe.objects import placed_objects
 from hangtime.bridge.recipe.problem import locate, parse_recipe, write_recipe
-from hangtime.solver.analysis.pinned_places import pinned_places
+from hangtime.solver.analysis.pins.pinned_places import pinned_places
 from hangtime.solver.data.contacts import Contact
 from hangtime.solver.data.faults import BadRecipe, InsideOut, NotGround
 from hangtime.solver.data.problem import MotionProblem

@@ -7,7 +7,7 @@ from pathlib import Path
 from hangtime.bridge.recipe.problem import parse_recipe
 from hangtime.operators.words.analysis_text import analysis_text, starter_recipe
 from hangtime.solver.analysis.analyse import analyse
-from hangtime.solver.analysis.pinned_places import chosen_contacts, phase_of
+from hangtime.solver.analysis.pins.pinned_places import chosen_contacts, phase_of
 from hangtime.solver.data.contacts import ContactSchedule
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.reports.recording import Origin

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hangtime.devtools.doctor.damages.clock import slowed
 from hangtime.devtools.doctor.damages.whole_body import sized
-from hangtime.solver.analysis.analyse import agreed_rate
+from hangtime.solver.analysis.carried_by import agreed_rate
 from hangtime.solver.analysis.performance import find_contacts, perform
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import build_character

@@ -11,7 +11,7 @@ from hangtime.operators.words.headline import accepted_lines, headline
 from hangtime.operators.words.messages import sentence
 from hangtime.operators.words.report_text import as_text
 from hangtime.solver.analysis.analyse import analyse
-from hangtime.solver.analysis.pinned_places import pinned_places
+from hangtime.solver.analysis.pins.pinned_places import pinned_places
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.constants import UP
 from hangtime.solver.data.contacts import PhaseKind

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 from hangtime.solver.analysis.analyse import analyse
-from hangtime.solver.analysis.pinned_places import pinned_places
+from hangtime.solver.analysis.pins.pinned_places import pinned_places
 from hangtime.solver.data.faults import ContradictoryPins, OutOfReach
 from hangtime.solver.data.problem import MotionProblem, OffsetAxes, Pin
 from hangtime.solver.data.requests import BodyChange, Requests

@@ -4,7 +4,7 @@ from contextlib import nullcontext
 
 import numpy as np
 import pytest
-from hangtime.solver.analysis.landing import Footing
+from hangtime.solver.analysis.pins.landing import Footing
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.faults import (
     Fault,

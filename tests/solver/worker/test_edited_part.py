@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 from hangtime.devtools.recordings import HOPS
-from hangtime.solver.analysis.pinned_places import chosen_contacts, phase_of
+from hangtime.solver.analysis.pins.pinned_places import chosen_contacts, phase_of
 from hangtime.solver.data.contacts import PhaseKind
 from hangtime.solver.data.problem import ContactEdit, Mend, MotionProblem, Pin
 from hangtime.solver.data.requests import BodyChange, Requests

@@ -4,17 +4,17 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..arrays import FloatArray
-from ..contacts.footfalls import footfalls
-from ..data.constants import UP
-from ..data.contacts import ContactSchedule, Phase, PhaseKind
-from ..data.faults import BeyondPrecision, ContradictoryPins, UnknownContact, UnknownPhase
-from ..data.problem import MotionProblem, OffsetAxes, Pin
-from ..data.scene import SceneObject
-from ..scene.checks import named
-from ..scene.triangle_mesh import placed_mesh
+from ...arrays import FloatArray
+from ...contacts.footfalls import footfalls
+from ...data.constants import UP
+from ...data.contacts import ContactSchedule, Phase, PhaseKind
+from ...data.faults import BeyondPrecision, ContradictoryPins, UnknownContact, UnknownPhase
+from ...data.problem import MotionProblem, OffsetAxes, Pin
+from ...data.scene import SceneObject
+from ...scene.checks import named
+from ...scene.triangle_mesh import placed_mesh
+from ..performance import Performance
 from .landing import Footing, Ground, land
-from .performance import Performance
 
 SAME_BODY_TOLERANCE = 0.003  # m
 SAME_FOOT_TOLERANCE = 0.02  # m; toes bend

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hangtime.operators.words.messages import sentence
-from hangtime.solver.analysis.landing import Footing, Ground, land
 from hangtime.solver.analysis.performance import point_depth
-from hangtime.solver.analysis.pinned_places import chosen_contacts, phase_of, pinned_footing
+from hangtime.solver.analysis.pins.landing import Footing, Ground, land
+from hangtime.solver.analysis.pins.pinned_places import chosen_contacts, phase_of, pinned_footing
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.contacts import Contact

@@ -9,17 +9,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..arrays import FloatArray
-from ..body.anatomy import Side
-from ..body.character import Character
-from ..data.constants import UP
-from ..data.contacts import Contact
-from ..data.faults import InsideOut, NoFaceThere, OverTheEdge
-from ..data.problem import Pin
-from ..data.scene import SceneObject
-from ..numerics.rotations import rotation_matrix
-from ..scene.triangle_mesh import Heights, TriangleMesh
-from .performance import above_ground
+from ...arrays import FloatArray
+from ...body.anatomy import Side
+from ...body.character import Character
+from ...data.constants import UP
+from ...data.contacts import Contact
+from ...data.faults import InsideOut, NoFaceThere, OverTheEdge
+from ...data.problem import Pin
+from ...data.scene import SceneObject
+from ...numerics.rotations import rotation_matrix
+from ...scene.triangle_mesh import Heights, TriangleMesh
+from ..performance import above_ground
 
 ROUNDS = 6  # in which a foot's plane settles on curved ground
 STEP = 0.04  # m, by which a face lies above or below a foot's plane and is another one's

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hangtime.solver.analysis.analyse import analyse
-from hangtime.solver.analysis.pinned_places import (
+from hangtime.solver.analysis.pins.pinned_places import (
     FURTHEST,
     backward_stances,
     chosen_contacts,
