@@ -6,7 +6,6 @@ import os
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,15 +13,10 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge import worker_client, worker_requests
-from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.pose_basis import basis_under
 from hangtime.bridge.armature.poses import sample
-from hangtime.bridge.repairs.analysis_key import analysis_is_of, analysis_key
 from hangtime.bridge.rows.phases import phases_of
 from hangtime.operators.solve import common
-from hangtime.operators.solve.adapt import read_wanted
-from hangtime.solver.analysis.motion_sketch import MotionSketch
-from hangtime.solver.data.recording import POSE_TOLERANCE
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.blender.helpers.actions import curves_of
 from hangtime.tests.blender.helpers.jump_scene import (
@@ -357,136 +351,6 @@ def test_a_wrong_request_is_said_and_changes_nothing(
     assert SceneState.of(analysed) == before
 
 
-def test_a_file_that_another_processor_analysed_needs_no_analysis(
-    analysed: bpy.types.Object,
-) -> None:
-    """Products of matrices end in other bits where they are computed by other instructions."""
-    settings, read = analysed.hangtime, complete(read_wanted(analysed))
-    bits = np.random.default_rng(0).choice([-1e-15, 1e-15], read.heads.shape)
-    assert analysis_is_of(settings, replace(read, heads=read.heads * (1.0 + bits)))
-    by_floats = np.random.default_rng(1).uniform(-1e-6, 1e-6, read.heads.shape)
-    assert analysis_is_of(settings, replace(read, heads=read.heads + by_floats))
-    assert not analysis_is_of(settings, replace(read, heads=read.heads + 1e-3))
-    for grid in (POSE_TOLERANCE, 0.0):  # as earlier versions kept it
-        settings.analysed = analysis_key(settings, read, grid, named=True, timed=True)
-        assert analysis_is_of(settings, read)
-
-
-def test_edit_mode_and_back_needs_no_analysis(analysed: bpy.types.Object) -> None:
-    """It moves bones by a fraction of a micrometre."""
-    for mode in ("EDIT", "OBJECT"):
-        bpy.ops.object.mode_set(mode=mode)
-    assert analysis_is_of(analysed.hangtime, complete(read_wanted(analysed)))
-
-
-def test_a_sketch_that_is_left_is_no_analysis(analysed: bpy.types.Object) -> None:
-    """As where the next results are made from a result, whose contacts are to be found anew."""
-    settings = analysed.hangtime
-    settings.use_range = False
-    read = complete(read_wanted(analysed))
-    settings.analysed, settings.analysed_motion = "", MotionSketch.of(read).text
-    assert not analysis_is_of(settings, read)
-
-
-@pytest.mark.usefixtures("analysed")
-@pytest.mark.slow
-def test_a_frame_rate_that_changed_is_named() -> None:
-    """As importing another clip sets it. At the analysis' own all is as before."""
-    render = bpy.context.scene.render
-    before = render.fps, render.fps_base
-    render.fps, render.fps_base = 24, 1.001
-    told = r"frame rate changed from 120 to 23\.976 frames a second.*set it back to 120"
-    with pytest.raises(RuntimeError, match=told):
-        bpy.ops.hangtime.fit()
-    render.fps, render.fps_base = before
-    assert bpy.ops.hangtime.fit() == {"FINISHED"}
-    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
-
-
-def moved(armature: bpy.types.Object) -> None:
-    armature.location.x += 1.0
-
-
-def key_moved(armature: bpy.types.Object) -> None:
-    curves_of(armature)[0].keyframe_points[150].co[1] += 0.1
-
-
-def constrained(armature: bpy.types.Object) -> None:
-    held = armature.pose.bones["LeftFoot"].constraints.new("LIMIT_ROTATION")
-    held.use_limit_x, held.owner_space = True, "LOCAL"
-
-
-def bone_renamed(armature: bpy.types.Object) -> None:
-    armature.data.bones["LeftFoot"].name = "ankle.L"
-
-
-@pytest.mark.parametrize(
-    ("change", "named"),
-    [
-        (moved, "its place"),
-        (key_moved, "its keys"),
-        (constrained, "its constraints"),
-        (bone_renamed, "its bones"),
-        (lambda a: (moved(a), constrained(a)), "its place, its constraints"),
-    ],
-)
-def test_what_is_not_as_it_was_analysed_is_named(
-    analysed: bpy.types.Object, change: Callable[[bpy.types.Object], object], named: str
-) -> None:
-    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
-    change(analysed)
-    with pytest.raises(RuntimeError, match=rf"changed since the analysis \({named}\); press"):
-        bpy.ops.hangtime.fit()
-
-
-def test_what_changed_since_an_earlier_version_analysed_is_one_of_many(
-    analysed: bpy.types.Object,
-) -> None:
-    """Which kept nothing of it."""
-    analysed.hangtime.property_unset("analysed_state")
-    moved(analysed)
-    with pytest.raises(RuntimeError, match=r"its bones, place, .* or unit scale changed since"):
-        bpy.ops.hangtime.fit()
-
-
-def test_a_frame_time_with_fewer_digits_is_the_same_frame_rate(analysed: bpy.types.Object) -> None:
-    """As importing another clip of the same capture sets it."""
-    render, settings = bpy.context.scene.render, analysed.hangtime
-    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
-    recording = complete(read_wanted(analysed))
-    for rate, same in ((1.0 / 0.008333, True), (1.0 / 0.00833, True), (120.0 / 1.001, False)):
-        render.fps, render.fps_base = 120, 120.0 / rate
-        assert analysis_is_of(settings, complete(read_wanted(analysed))) == same
-    render.fps_base = 1.0
-    assert analysis_is_of(settings, recording)
-
-
-def test_a_frame_rate_that_no_one_kept_may_be_what_changed(analysed: bpy.types.Object) -> None:
-    """In files of earlier versions."""
-    for kept in ("analysed_rate", "analysed_state"):
-        analysed.hangtime.property_unset(kept)
-    bpy.context.scene.render.fps = 24
-    with pytest.raises(
-        RuntimeError, match=r"or the scene's frame rate .*changed since the analysis"
-    ):
-        bpy.ops.hangtime.fit()
-
-
-@pytest.mark.slow
-def test_frames_that_were_not_analysed_are_named(analysed: bpy.types.Object) -> None:
-    """As ticking, or dragging, Frame Range chooses them. At the analysis' own all is as before."""
-    settings = analysed.hangtime
-    settings.last_frame = LAST - 10
-    chosen = f"frames {FIRST} to {LAST - 10} are to be adapted now, but {FIRST} to {LAST} were"
-    with pytest.raises(RuntimeError, match=chosen):
-        bpy.ops.hangtime.adapt()
-    settings.last_frame, settings.use_range = LAST, False
-    with pytest.raises(RuntimeError, match=f"but {FIRST} to {LAST} were analysed"):
-        bpy.ops.hangtime.adapt()
-    settings.use_range = True
-    assert bpy.ops.hangtime.fit() == {"FINISHED"}
-
-
 def loop_ticked(armature: bpy.types.Object) -> None:
     armature.hangtime.loop.use = True
 
@@ -503,12 +367,3 @@ def test_what_else_an_analysis_depends_on_is_named(
 ) -> None:
     change(analysed)
     assert_refused(bpy.ops.hangtime.adapt, analysed, named)
-
-
-@pytest.mark.slow
-def test_an_action_may_be_renamed_after_the_analysis(analysed: bpy.types.Object) -> None:
-    analysed.animation_data.action.name = "Take 7"
-    assert bpy.ops.hangtime.fit() == {"FINISHED"}
-    curves_of(analysed)[0].keyframe_points[150].co[1] += 0.1
-    with pytest.raises(RuntimeError, match="changed since the analysis"):
-        bpy.ops.hangtime.fit()
