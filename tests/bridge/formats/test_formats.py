@@ -1,26 +1,18 @@
 """Motion files: every complaint names its line, and what is read is what was recorded."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hangtime.bridge.formats.acclaim import find_asf, read_acclaim
 from hangtime.bridge.formats.bvh import read_bvh
-from hangtime.bridge.formats.guess import ACCLAIM_UNIT, guess_unit, guess_up
-from hangtime.bridge.formats.motion_clip import (
-    Joint,
-    MotionClip,
-    forward_kinematics,
-    rest_axes,
-    to_recording,
-)
+from hangtime.bridge.formats.guess import ACCLAIM_UNIT
+from hangtime.bridge.formats.motion_clip import forward_kinematics, rest_axes, to_recording
 from hangtime.bridge.formats.obj import UnreadableMesh, read_obj
 from hangtime.devtools.recordings import HOPS
 from hangtime.operators.words.doubt_text import file_doubts
 from hangtime.solver.data.faults import ClipNotOpened, NonFiniteKey, UnreadableClip
 from hangtime.solver.data.reports.recording import Origin
-from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.tests.helpers.clips import load_clip, load_recording
 
 HOP_BVH = "hop_01_01.bvh"
@@ -378,56 +370,6 @@ def test_both_forms_of_one_recording_agree() -> None:
             assert ACCLAIM_UNIT * np.abs(left - right).max() < 2e-5, a_name
 
 
-@pytest.mark.parametrize(
-    ("relative", "unit", "up", "rate"),
-    [
-        ("forward_jump_116cm.bvh", ACCLAIM_UNIT, "Y", 120.0),
-        ("131_03_hop.bvh", ACCLAIM_UNIT, "Y", 120.0),
-        (HOP_BVH, ACCLAIM_UNIT, "Y", 120.0),
-        ("run_1.bvh", ACCLAIM_UNIT, "Y", 120.0),
-        (HOPS, ACCLAIM_UNIT, "Y", 120.0),
-        ("cmu1_jumping_jacks.bvh", ACCLAIM_UNIT, "Y", 30.0),
-        ("fair1_jumping.bvh", 0.0254, "Z", 120 / 1.001),
-        ("rokoko_jesse_dance.bvh", 0.01, "Y", 100.0),
-    ],
-)
-def test_unit_up_and_rate_are_guessed_right(
-    relative: str, unit: float, up: str, rate: float
-) -> None:
-    clip = load_clip(relative)
-    assert guess_up(clip) == up
-    assert guess_unit(clip) == pytest.approx(unit)
-    assert 1.0 / clip.frame_time == pytest.approx(rate)
-
-
-def test_who_lies_is_no_smaller() -> None:
-    """A clip of a fall, or of crawling, has the same unit as one of the same figure that stands."""
-    clip = load_clip("rokoko_jesse_dance.bvh")
-    rotations = clip.rotations.copy()
-    rotations[:, 0] = axis_rotation(0, np.full(len(rotations), np.pi / 2)) @ rotations[:, 0]
-    assert guess_unit(replace(clip, rotations=rotations)) == pytest.approx(0.01)
-
-
-@pytest.mark.parametrize("metres", [0.0, 10.0])
-def test_a_root_that_stands_still_far_off_makes_nobody_larger(metres: float) -> None:
-    """As many suits export it: the hips hang on a joint that marks where the stage is."""
-    clip, unit = load_clip("rokoko_jesse_dance.bvh"), 0.01
-    still = Joint("Reference", -1, np.zeros(3))
-    joints = (still, *(replace(each, parent=each.parent + 1) for each in clip.joints))
-    count = len(clip.positions)
-    positions = np.concatenate([np.zeros((count, 1, 3)), clip.positions], axis=1)
-    positions[:, 1] += [metres / unit, 0.0, 0.0]
-    turned = np.concatenate([np.tile(np.eye(3), (count, 1, 1, 1)), clip.rotations], axis=1)
-    far = replace(clip, joints=joints, positions=positions, rotations=turned)
-    assert guess_unit(far) == pytest.approx(unit)
-
-
-def test_up_is_guessed_without_telling_names() -> None:
-    clip = load_clip("fair1_jumping.bvh")
-    joints = tuple(replace(joint, name=f"joint{i}") for i, joint in enumerate(clip.joints))
-    assert guess_up(replace(clip, joints=joints)) == "Z"
-
-
 def test_recording_of_the_hops_flies_where_the_list_says() -> None:
     recording = load_recording(HOPS)
     feet = [i for i, bone in enumerate(recording.bones) if "toe" in bone.name]
@@ -445,58 +387,6 @@ def test_a_mesh_with_a_place_that_is_no_number(vertex: str, tmp_path: Path) -> N
     with pytest.raises(UnreadableMesh) as caught:
         read_obj(path)
     assert caught.value.line == 2
-
-
-UP = {"Y": 1, "Z": 2}
-UPRIGHT_AT_REST = ("forward_jump_116cm.bvh", "Y"), ("fair1_jumping.bvh", "Z")
-
-
-def turned(clip: MotionClip, turn: np.ndarray) -> MotionClip:
-    """Its motion turned by a rotation (3, 3) about the origin; the rest pose stays."""
-    rotations, positions = clip.rotations.copy(), clip.positions.copy()
-    rotations[:, 0], positions[:, 0] = turn @ rotations[:, 0], positions[:, 0] @ turn.T
-    return replace(clip, rotations=rotations, positions=positions)
-
-
-def on_the_floor(clip: MotionClip, up: str) -> MotionClip:
-    """The figure set down so that its lowest joint is on the floor at each frame."""
-    positions = clip.positions.copy()
-    positions[:, 0, UP[up]] -= forward_kinematics(clip)[0][..., UP[up]].min(axis=1)
-    return replace(clip, positions=positions)
-
-
-@pytest.mark.parametrize(("name", "up"), UPRIGHT_AT_REST)
-@pytest.mark.parametrize("heading", [0, 90, 180, 270])
-@pytest.mark.parametrize("tilt", [90, -90, 180])
-def test_who_lies_or_stands_on_the_hands_all_through_is_upright_at_rest(
-    name: str, up: str, heading: int, tilt: int
-) -> None:
-    way = axis_rotation(UP[up], np.radians(heading)) @ axis_rotation(0, np.radians(tilt))
-    assert guess_up(on_the_floor(turned(load_clip(name), way), up)) == up
-
-
-@pytest.mark.parametrize(("name", "up"), UPRIGHT_AT_REST)
-@pytest.mark.parametrize("heading", [0, 90, 180, 270])
-def test_a_root_that_turns_all_to_the_other_axis_outweighs_the_rest_pose(
-    name: str, up: str, heading: int
-) -> None:
-    """As exporters write motion in another world than the skeleton's; also in place."""
-    clip, other = load_clip(name), "Z" if up == "Y" else "Y"
-    way = axis_rotation(0, np.radians(90 if up == "Y" else -90))
-    way = way @ axis_rotation(UP[up], np.radians(heading))
-    at_origin = clip.positions.copy()
-    at_origin[:, 0] = 0.0
-    assert guess_up(turned(clip, way)) == other
-    assert guess_up(turned(replace(clip, positions=at_origin), way)) == other
-
-
-def test_a_rest_pose_whose_bones_all_follow_one_axis_tells_nothing() -> None:
-    clip = load_clip("forward_jump_116cm.bvh")
-    joints = tuple(
-        replace(joint, offset=np.array([0.0, 0.0, np.linalg.norm(joint.offset)]))
-        for joint in clip.joints
-    )
-    assert guess_up(replace(clip, joints=joints)) == "Y"
 
 
 def test_bones_of_which_a_motion_says_nothing_are_told(tmp_path: Path) -> None:
