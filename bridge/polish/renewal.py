@@ -14,11 +14,11 @@ from ..controls.driven import is_driven
 from ..properties.action import action_settings
 from ..properties.settings import settings_of
 from ..repairs.analysis_key import wanted_range
+from ..results.look_again import polished_result
 from ..rows.choices import BodyKind
 from ..takes.options import loop_options
 from ..takes.owned import owned_channels, placing_channels
 from ..takes.take_time import TakeTime
-from ..takes.takes import polished_result
 from .hand_offsets import Polish, polish_of, without
 from .pins import MovedPin, PinnedFrames, contact_pins, point_pins
 from .put_on import PlacedPolish, placed, put_on

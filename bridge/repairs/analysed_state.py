@@ -20,9 +20,9 @@ from ..armature.fcurves import holder_in, slot_identifier
 from ..armature.keys_digest import stored
 from ..hidden_texts import HiddenText, entries, word
 from ..properties.settings import settings_of
+from ..results.digests import take_digest
 from ..scene.surfaces_digest import Conditions
 from ..takes.options import loop_options
-from ..takes.takes import take_digest
 
 _TOLD = {  # by Blender: of the frame that is shown, and of the slots that an action has now
     *("error_location", "error_rotation"),

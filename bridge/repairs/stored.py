@@ -27,9 +27,9 @@ from ..armature.actions import recorded_action
 from ..armature.poses import frames_per_second
 from ..hidden_texts import HiddenText, entries, listed, number, spans_text, whole, word
 from ..properties.settings import HangtimeSettings, settings_of
+from ..results.digests import take_digest
 from ..rows.copying import rows_named
 from ..rows.finding import HangtimeFinding
-from ..takes.takes import take_digest
 from .length_keys import stretching_bone
 
 USUAL = asdict(Repairs())

@@ -17,8 +17,8 @@ from ..properties.of_actions.known_contacts import KNOWN
 from ..properties.of_actions.shown_overlaps import OVERLAPS
 from ..properties.of_actions.shown_times import TIMES
 from ..properties.settings import settings_of
+from ..results.made import SPANS
 from ..rows.phases import UNSEEN
-from ..takes.takes import SPANS
 from ..unkeyed import UNKEYED
 from .analysed_state import STATE
 from .stored import FEET, is_finding

@@ -8,7 +8,6 @@ armature's; the others wait with their actions.
 from __future__ import annotations
 
 import itertools
-import json
 from collections.abc import Collection
 from dataclasses import dataclass
 
@@ -17,42 +16,18 @@ import bpy
 from ..accessors import HOLDS, current_action, made_for, present, root_of, source_of
 from ..action_slots import copied_slots, lost_slot, settle_copy
 from ..armature.actions import recorded_action, show
-from ..armature.fcurves import slot_identifier
-from ..armature.keys_digest import keys_digest
-from ..armature.played import adopt_strip, in_scene_time, strip_time
-from ..armature.traces_store import forget, put_by, take_up
-from ..fake_users import guard
-from ..hidden_texts import spans_text
+from ..armature.played import adopt_strip
+from ..armature.traces_store import put_by, take_up
 from ..marked_strips import MARKS
-from ..properties.action import HangtimeAction, action_settings
-from ..properties.overridden_lists import linked_count
+from ..properties.action import action_settings
 from ..properties.settings import HangtimeSettings, settings_of
 from ..properties.stances import move_empties
-from ..rows.choices import Span
 from ..rows.copying import (
-    OUTCOMES,
-    HeldSettings,
     copy_settings,
-    held_settings,
-    put_settings,
-    rows_named,
-    settings_digest,
-    settings_targets,
 )
-from ..scene.surfaces_digest import Conditions, surfaces_digest
-from .difference import bake_combined, difference_shown
-from .span import ResultSpan
 
-_OF_RECORDING = ("repairs", "findings", "examined", "examination_stale", "feet")
-_NOT_ASKED = (  # of the next result
-    *("marks", "adapted", "source", MARKS.name, "status", "met", "measured_height", "fit_quality"),
-    *("shapes_told", "unseen", "analysed_motion", "analysed_span", "analysed_contacts"),
-    *("whole_stance", "moving", "active_contact", "active_constraint", "active_surface"),
-    *("active_body_change", "analysed_state"),
-    *("keep_polish", *_OF_RECORDING),
-)
-_NOT_KEPT = ("marks", "adapted", "source", MARKS.name, *_OF_RECORDING)
-SPANS = spans_text("spans")
+OF_RECORDING = ("repairs", "findings", "examined", "examination_stale", "feet")
+NOT_KEPT = ("marks", "adapted", "source", MARKS.name, *OF_RECORDING)
 _Results = dict["bpy.types.Action", list["bpy.types.Action"]]
 _LONGEST = 63 - len(" adapted 99")  # bytes of a name of which the rest is ours
 
@@ -68,28 +43,6 @@ class ListedTake:
     shown: bool
     stale: str
     polished: bool
-
-
-@dataclass(frozen=True)
-class AskedSettings:
-    """Settings as they were when a result was asked for, after which the artist may go on changing
-    them. key: their digest. surfaces: that of the surfaces among which they asked for it.
-    conditions: as text what else there was."""
-
-    held: HeldSettings
-    key: str
-    surfaces: str
-    conditions: str
-
-    @staticmethod
-    def of(settings: HangtimeSettings) -> AskedSettings:
-        """Of what an armature's settings are now, without what solves told of them."""
-        held = held_settings(settings, (*_NOT_KEPT, *OUTCOMES))
-        armature = settings.id_data
-        assert isinstance(armature, bpy.types.Object)
-        surfaces = surfaces_digest(settings, armature, {})
-        key = settings_digest(settings, _NOT_ASKED, off=False)
-        return AskedSettings(held, key, surfaces, Conditions.of(armature).as_text())
 
 
 def derive(action: bpy.types.Action, source: bpy.types.Action, armature: bpy.types.Object) -> None:
@@ -214,18 +167,18 @@ def show_take(armature: bpy.types.Object, action: bpy.types.Action) -> None:
 def keep_edit(armature: bpy.types.Object) -> None:
     """Put the edit at work down with the result that it led to, or with the take it is about."""
     settings, source = settings_of(armature), recorded_action(armature)
-    result = _own_result(armature)
+    result = own_result(armature)
     if result is not None:
-        copy_settings(settings, action_settings(result).edit, _NOT_KEPT)
+        copy_settings(settings, action_settings(result).edit, NOT_KEPT)
     elif source is not None:
         source[HOLDS] = True
-        copy_settings(settings, action_settings(source).next_edit, _NOT_KEPT)
+        copy_settings(settings, action_settings(source).next_edit, NOT_KEPT)
     owner = result or source
     if owner is not None:
         put_by(armature, owner)
 
 
-def _own_result(armature: bpy.types.Object) -> bpy.types.Action | None:
+def own_result(armature: bpy.types.Object) -> bpy.types.Action | None:
     """The result of the edit at work; a copied armature points to one whose edit is another's."""
     result: bpy.types.Action | None = settings_of(armature).adapted
     return result if result is not None and made_for(armature, result) else None
@@ -248,189 +201,5 @@ def _take_up(armature: bpy.types.Object, action: bpy.types.Action) -> None:
 
 
 def _restore(settings: HangtimeSettings, edit: HangtimeSettings) -> None:
-    copy_settings(edit, settings, _NOT_KEPT)
+    copy_settings(edit, settings, NOT_KEPT)
     move_empties(settings)
-
-
-def starts_from_result(armature: bpy.types.Object) -> bool:
-    """Whether the next result is made from a result, and not from the recording."""
-    source = recorded_action(armature)
-    return source is not None and source_of(source) is not None
-
-
-def start_from_result(armature: bpy.types.Object, result: bpy.types.Action) -> None:
-    """Make the next results from a result: a second jump builds on the first, and hand polish
-    stays. Contacts are to be found anew; limits that always hold stay."""
-    keep_edit(armature)
-    bake_shown(armature, result)
-    settings = settings_of(armature)
-    settings.source, settings.adapted = result, None
-    rows_named(settings.contacts, ())
-    rows_named(settings.stances, ())
-    _drop_constraints(armature, settings)
-    forget(armature)
-    settings.analysed = settings.analysed_motion = settings.analysed_contacts = ""
-    settings.analysed_state = settings.unseen = settings.fit_quality = settings.status = ""
-    result.use_fake_user = True
-    show(armature, result)
-
-
-def _drop_constraints(armature: bpy.types.Object, settings: HangtimeSettings) -> None:
-    """But for those that always hold; an override's linked ones are switched off."""
-    linked = linked_count(armature, "constraints")
-    for index in reversed(range(len(settings.constraints))):
-        if settings.constraints[index].span == Span.ALWAYS.name:
-            continue
-        if index < linked:
-            settings.constraints[index].used = False
-        else:
-            settings.constraints.remove(index)
-
-
-def start_from_recording(armature: bpy.types.Object) -> None:
-    """Make the next results from the recording again, with the edit that belongs to it."""
-    source = recorded_action(armature)
-    if source is not None:
-        show_take(armature, root_of(source))
-
-
-# ---------------------------------------------------------------- what became of them
-
-
-def note_made(
-    armature: bpy.types.Object,
-    action: bpy.types.Action,
-    span: ResultSpan | None,
-    later: int,
-    asked: AskedSettings | None = None,
-) -> None:
-    """Keep with a new result its edit, and what it and its take are now.
-
-    asked: what it was made with; None for the settings as they are.
-    """
-    made, source = action_settings(action), source_of(action)
-    assert source is not None
-    asked = asked or AskedSettings.of(settings_of(armature))
-    copy_settings(settings_of(armature), made.edit, _NOT_KEPT)
-    put_settings(asked.held, made.edit)
-    made.asked_key, made.surfaces_key = asked.key, asked.surfaces
-    made.conditions = asked.conditions
-    made.asked_targets.clear()
-    for target in settings_targets(made.edit, _NOT_ASKED, off=False):
-        made.asked_targets.add().target = target
-    made.take_key, made.own_key = take_digest(armature, source), _digest(action)
-    made.stale, made.polished, made.holds_polish = "", False, False
-    spans = []
-    if span is not None:
-        for first, last in adapted_spans(source):
-            if last <= span.first:
-                spans.append((first, last))
-            elif first + later >= span.last:
-                spans.append((first + later, last + later))
-        spans.append((span.first, span.last))
-    made.spans = json.dumps(spans)
-
-
-def adapted_spans(action: bpy.types.Action) -> tuple[tuple[float, float], ...]:
-    """First and last frame of each adaptation that a take holds."""
-    return SPANS.of(action_settings(action).spans)
-
-
-TAKE_CHANGED = "The take below has changed"
-EDIT_CHANGED = "The settings have changed"
-SURFACES_CHANGED = "A surface has changed"
-
-
-def look_again(armature: bpy.types.Object) -> bool:
-    """Note which results are not what would be made now, and which were edited by hand.
-
-    Returns whether anything is new.
-    """
-    settings, own, new = settings_of(armature), _own_result(armature), False
-    keys: dict[bpy.types.Action, str] = {}
-    sources: dict[bpy.types.Action, str] = {}
-    surfaces: dict[bpy.types.Object, str] = {}
-    for take in takes_of(armature):
-        kept = action_settings(take.action)
-        if take.source is None or not kept.own_key:
-            continue
-        if take.action not in keys:
-            keys[take.action] = _digest(take.action)
-        if take.source not in sources:
-            sources[take.source] = take_digest(armature, take.source)
-        edit = settings if take.action == own else kept.edit
-        stale = unphysical_since(armature, take.action)
-        if stale:
-            pass  # of which the changes below may only be what follows
-        elif sources[take.source] != kept.take_key:
-            stale = TAKE_CHANGED
-        elif not _asks_the_same(edit, kept):
-            stale = EDIT_CHANGED
-        elif kept.surfaces_key and surfaces_digest(edit, armature, surfaces) != kept.surfaces_key:
-            stale = SURFACES_CHANGED
-        edited = keys[take.action] != kept.own_key
-        polished = kept.holds_polish or edited
-        if edited and take.action.library is None:  # who works on a result means to keep it
-            guard(take.action)
-        if (kept.stale, kept.polished) != (stale, polished):
-            kept.stale, kept.polished = stale, polished
-            new = True
-    return new
-
-
-def unphysical_since(armature: bpy.types.Object, result: bpy.types.Action) -> str:
-    """What of the scene or of its armature's place makes a result unphysical, in words; "" for
-    nothing, as for results of earlier versions."""
-    made = action_settings(result)
-    if not made.conditions:
-        return ""
-    before = Conditions.read(str(made.conditions))
-    return Conditions.of(armature).since(before, among_surfaces=bool(made.surfaces_key))
-
-
-def _asks_the_same(edit: HangtimeSettings, kept: HangtimeAction) -> bool:
-    """Whether an edit is what a result was made with. What is switched off asks for nothing, as do
-    linked rows that an edit lacks; results of earlier versions count it."""
-    targets = [row.target for row in kept.asked_targets]
-    return any(
-        settings_targets(edit, _NOT_ASKED, off=off) == targets
-        and settings_digest(edit, _NOT_ASKED, off=off) == str(kept.asked_key)
-        for off in (False, True)
-    )
-
-
-def polished_result(armature: bpy.types.Object) -> bpy.types.Action | None:
-    """The last result, where it has hand polish: was edited since it was made, or took it over."""
-    result: bpy.types.Action | None = settings_of(armature).adapted
-    if result is None or not action_settings(result).own_key:
-        return None
-    kept = action_settings(result)
-    return result if kept.holds_polish or _digest(result) != kept.own_key else None
-
-
-def take_digest(armature: bpy.types.Object, take: bpy.types.Action) -> str:
-    """Of the keys of what results are made from, and of when a strip plays it."""
-    time, found = strip_time(armature, take), _digest(take)
-    return found if time is None else f"{found} {time}"
-
-
-def _digest(action: bpy.types.Action) -> str:
-    """Of a take's keys, and of the difference that is edited in its stead."""
-    difference = difference_shown(action)
-    own = keys_digest(action)
-    return own if difference is None else f"{own} {keys_digest(difference)}"
-
-
-def bake_shown(armature: bpy.types.Object, result: bpy.types.Action) -> None:
-    """Make a result that is combined with its take what its strip shows, where either was edited;
-    before it is built upon, or leaves the file."""
-    made, source = action_settings(result), source_of(result)
-    if source is None or difference_shown(result) is None:
-        return
-    now = _digest(result)
-    if (take_digest(armature, source), now) != (made.take_key, made.own_key):
-        _, _, difference = now.partition(" ")
-        made.holds_polish |= difference != made.own_key.partition(" ")[2]
-        with in_scene_time(armature, source) as take:
-            bake_combined(result, take, slot_identifier(armature))
-        made.own_key = _digest(result)

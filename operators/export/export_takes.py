@@ -12,8 +12,10 @@ from ...bridge.libraries import lost_character
 from ...bridge.properties.action import action_settings
 from ...bridge.properties.settings import settings_of
 from ...bridge.recipe.export import ExportOptions
+from ...bridge.results.combined import bake_shown
+from ...bridge.results.look_again import unphysical_since
 from ...bridge.rows.choices import Engine, FileFormat, RootMotion
-from ...bridge.takes.takes import bake_shown, takes_of, unphysical_since
+from ...bridge.takes.takes import takes_of
 from ...solver.data.faults import OutputNotWritable
 from ..names import OperatorId
 from ..operator_types import FROM_BLEND, OperatorResult

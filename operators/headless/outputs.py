@@ -316,8 +316,8 @@ class Outputs:
     def _motion(self) -> AdaptedMotion:
         """The motion, to be put into the take."""
         from ...bridge.accessors import current_action, present
+        from ...bridge.results.made import adapted_spans
         from ...bridge.takes.plan import AdaptedMotion
-        from ...bridge.takes.takes import adapted_spans
 
         return AdaptedMotion(
             self.result.track,

@@ -29,12 +29,12 @@ from ...bridge.repairs.analysis_key import (
     wanted_range,
 )
 from ...bridge.repairs.stored import undoubted
+from ...bridge.results.made import AskedSettings
 from ...bridge.rows.aimed_requests import apart_from_aimed, require_unaimed
 from ...bridge.rows.choices import LoopRoot, WrittenAs
 from ...bridge.rows.phases import listed
 from ...bridge.scene.moving_empties import take_places
 from ...bridge.takes.options import loop_options, result_options
-from ...bridge.takes.takes import AskedSettings
 from ...bridge.takes.write_result import require_slot
 from ...bridge.worker_client import shared
 from ...solver.body.anatomy import map_anatomy

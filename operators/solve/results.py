@@ -10,7 +10,9 @@ from ...bridge.armature.strips import strips_of
 from ...bridge.libraries import lost_file
 from ...bridge.properties.action import action_settings
 from ...bridge.properties.settings import settings_of
-from ...bridge.takes.takes import bake_shown, results_from, unphysical_since
+from ...bridge.results.combined import bake_shown
+from ...bridge.results.look_again import unphysical_since
+from ...bridge.takes.takes import results_from
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
 from .common import (

@@ -11,8 +11,8 @@ from ...bridge.recipe.keys import KeyOptions
 from ...bridge.recipe.loop import LoopOptions
 from ...bridge.recipe.result import ResultOptions
 from ...bridge.repairs.analysed_state import AnalysedState
+from ...bridge.results.made import AskedSettings
 from ...bridge.scene.read import SceneReading
-from ...bridge.takes.takes import AskedSettings
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
 from ...solver.data.scene import SupportBox

@@ -10,15 +10,10 @@ from ...bridge.libraries import lost_file
 from ...bridge.polish.renewal import is_kept
 from ...bridge.properties.action import action_settings
 from ...bridge.properties.settings import settings_of
+from ...bridge.results.look_again import look_again, polished_result
+from ...bridge.results.start import start_from_recording, start_from_result
 from ...bridge.takes.options import loop_options
-from ...bridge.takes.takes import (
-    look_again,
-    polished_result,
-    show_take,
-    start_from_recording,
-    start_from_result,
-    takes_of,
-)
+from ...bridge.takes.takes import show_take, takes_of
 from ...solver.data.faults import BadRecipe
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator

@@ -6,7 +6,7 @@ from bpy.app.handlers import persistent
 from ...bridge.accessors import current_action
 from ...bridge.armature.poses import frames_per_second, metres_per_unit
 from ...bridge.repairs.stored import look_at_examination
-from ...bridge.takes.takes import look_again
+from ...bridge.results.look_again import look_again
 from .common import chosen_armature
 from .live import editors
 from .session import session

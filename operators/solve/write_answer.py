@@ -21,13 +21,14 @@ from ...bridge.properties.settings import settings_of
 from ...bridge.recipe.result import require_return_after
 from ...bridge.repairs.analysed_state import AnalysedState
 from ...bridge.repairs.analysis_key import SAME_RATE
+from ...bridge.results.made import adapted_spans, note_made
 from ...bridge.rows.choices import After, ContactMarkers, WrittenAs
 from ...bridge.rows.phases import roles_in
 from ...bridge.scene.played_end import play_longer
 from ...bridge.takes.plan import AdaptedMotion
 from ...bridge.takes.span import ResultSpan
 from ...bridge.takes.take_time import TakeTime
-from ...bridge.takes.takes import adapted_spans, derive, free_name, note_made
+from ...bridge.takes.takes import derive, free_name
 from ...bridge.takes.write_result import combine, lay_in_slot, write_adapted_incrementally
 from ...solver.body.proportions import changed_recording
 from ...solver.data.faults import ChangedMeanwhile, EditedMeanwhile, Fault, RateChanged

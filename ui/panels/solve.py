@@ -5,9 +5,10 @@ import bpy
 from ...bridge.accessors import current_action, present
 from ...bridge.properties.action import action_settings
 from ...bridge.properties.settings import settings_of
+from ...bridge.results.start import starts_from_result
 from ...bridge.rows.choices import After
 from ...bridge.rows.kind import Icon
-from ...bridge.takes.takes import ListedTake, starts_from_result, takes_of
+from ...bridge.takes.takes import ListedTake, takes_of
 from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
 from ...operators.solve.results import compared, performer_of, result_of

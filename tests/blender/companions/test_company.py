@@ -19,10 +19,10 @@ from hangtime.bridge.files.reimport import reimport
 from hangtime.bridge.polish.renewal import Renewal
 from hangtime.bridge.recipe.export import ExportOptions
 from hangtime.bridge.recipe.result import ResultOptions
+from hangtime.bridge.results.made import note_made
 from hangtime.bridge.rows.choices import After, Engine, RootMotion, WrittenAs
 from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.span import WrittenTake
-from hangtime.bridge.takes.takes import note_made
 from hangtime.bridge.takes.write_result import (
     combine,
     write_adapted_incrementally,

@@ -15,8 +15,10 @@ from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.constraints.requests import requests_of
 from hangtime.bridge.constraints.rows import free_name
 from hangtime.bridge.properties.stances import active_contact
+from hangtime.bridge.results.look_again import look_again
+from hangtime.bridge.results.made import note_made
 from hangtime.bridge.rows.phases import listed
-from hangtime.bridge.takes.takes import derive, look_again, note_made, show_take
+from hangtime.bridge.takes.takes import derive, show_take
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 

@@ -18,7 +18,8 @@ from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.bridge.files.import_clip import import_clip
 from hangtime.bridge.polish.samples import written_of
 from hangtime.bridge.repairs.analysed_state import AnalysedState, changed_since_analysis
-from hangtime.bridge.takes.takes import EDIT_CHANGED, AskedSettings, look_again
+from hangtime.bridge.results.look_again import EDIT_CHANGED, look_again
+from hangtime.bridge.results.made import AskedSettings
 from hangtime.bridge.worker_client import shared
 from hangtime.operators.solve import analyze
 from hangtime.operators.solve import write_answer as write_answer_module

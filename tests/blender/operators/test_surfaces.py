@@ -17,7 +17,7 @@ from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.bridge.constraints.surface_status import KEPT_OUT, write_surface_status
 from hangtime.bridge.repairs.analysis_key import analysis_key
 from hangtime.bridge.repairs.placed_armature import repair
-from hangtime.bridge.takes.takes import AskedSettings
+from hangtime.bridge.results.made import AskedSettings
 from hangtime.operators.drag.drag_state import Landing
 from hangtime.operators.drag.rays import Ray
 from hangtime.operators.drag.snapping import Snapping

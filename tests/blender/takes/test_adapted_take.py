@@ -11,7 +11,7 @@ from hangtime.bridge.accessors import current_action
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.actions import read_recorded, recorded_action
 from hangtime.bridge.armature.read import read_recording
-from hangtime.bridge.takes.takes import TAKE_CHANGED, look_again
+from hangtime.bridge.results.look_again import TAKE_CHANGED, look_again
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.helpers.clips import JUMP_FRAMES
 from mathutils import Matrix

@@ -20,9 +20,12 @@ from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.exports.export import export_takes
 from hangtime.bridge.files.reimport import reimport
 from hangtime.bridge.recipe.result import ResultOptions
+from hangtime.bridge.results.look_again import look_again
+from hangtime.bridge.results.made import note_made
+from hangtime.bridge.results.start import start_from_result
 from hangtime.bridge.rows.choices import WrittenAs
 from hangtime.bridge.takes.plan import AdaptedMotion
-from hangtime.bridge.takes.takes import derive, look_again, note_made, start_from_result, takes_of
+from hangtime.bridge.takes.takes import derive, takes_of
 from hangtime.bridge.takes.write_result import (
     lay_in_slot,
     require_slot,

@@ -19,9 +19,10 @@ from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.armature.strips import hidden_beyond, layers_above
 from hangtime.bridge.recipe.result import ResultOptions
+from hangtime.bridge.results.look_again import look_again
+from hangtime.bridge.results.made import note_made
 from hangtime.bridge.rows.choices import After, WrittenAs
 from hangtime.bridge.takes.plan import AdaptedMotion
-from hangtime.bridge.takes.takes import look_again, note_made
 from hangtime.bridge.takes.write_result import combine, lay_in_slot, write_adapted_incrementally
 from hangtime.operators.words.messages import sentence
 from hangtime.solver.data.faults import UnreadStrips

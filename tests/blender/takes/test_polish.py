@@ -16,10 +16,11 @@ from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.polish.pins import MovedPin
 from hangtime.bridge.polish.renewal import Renewal
 from hangtime.bridge.recipe.result import ResultOptions
+from hangtime.bridge.results.made import note_made
 from hangtime.bridge.rows.choices import After, WrittenAs
 from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.take_time import TakeTime
-from hangtime.bridge.takes.takes import note_made, show_take
+from hangtime.bridge.takes.takes import show_take
 from hangtime.bridge.takes.write_result import combine, write_adapted_incrementally
 from hangtime.operators.words.take_text import polish_lines
 from hangtime.solver.data.contacts import ContactSchedule

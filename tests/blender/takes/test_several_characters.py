@@ -9,8 +9,9 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import current_action, source_of
+from hangtime.bridge.results.start import start_from_result
 from hangtime.bridge.takes import takes
-from hangtime.bridge.takes.takes import derive, keep_edit, start_from_result, takes_of
+from hangtime.bridge.takes.takes import derive, keep_edit, takes_of
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 

@@ -17,9 +17,11 @@ from hangtime.bridge.armature.keys_digest import keys_digest
 from hangtime.bridge.armature.poses import Poses, sample
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.recipe.result import ResultOptions
+from hangtime.bridge.results.combined import bake_shown
+from hangtime.bridge.results.look_again import look_again
+from hangtime.bridge.results.made import note_made
 from hangtime.bridge.rows.choices import WrittenAs
 from hangtime.bridge.takes.plan import AdaptedMotion
-from hangtime.bridge.takes.takes import bake_shown, look_again, note_made
 from hangtime.bridge.takes.write_result import combine, write_adapted_incrementally
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap

@@ -17,22 +17,22 @@ from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.actions import read_recorded, recorded_action, show
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.recipe.result import ResultOptions
-from hangtime.bridge.scene.surfaces_digest import ELSEWHERE
-from hangtime.bridge.takes.plan import AdaptedMotion
-from hangtime.bridge.takes.takes import (
+from hangtime.bridge.results.look_again import (
     EDIT_CHANGED,
     SURFACES_CHANGED,
     TAKE_CHANGED,
-    adapted_spans,
     look_again,
-    note_made,
     polished_result,
-    show_take,
+)
+from hangtime.bridge.results.made import adapted_spans, note_made
+from hangtime.bridge.results.start import (
     start_from_recording,
     start_from_result,
     starts_from_result,
-    takes_of,
 )
+from hangtime.bridge.scene.surfaces_digest import ELSEWHERE
+from hangtime.bridge.takes.plan import AdaptedMotion
+from hangtime.bridge.takes.takes import show_take, takes_of
 from hangtime.bridge.takes.write_result import write_adapted_incrementally
 from hangtime.operators import operator_types
 from hangtime.operators.solve import adapt as adapt_operators

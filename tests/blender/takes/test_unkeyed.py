@@ -13,9 +13,11 @@ from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.recipe.result import ResultOptions
+from hangtime.bridge.results.made import note_made
+from hangtime.bridge.results.start import start_from_result
 from hangtime.bridge.rows.choices import WrittenAs
 from hangtime.bridge.takes.plan import AdaptedMotion
-from hangtime.bridge.takes.takes import note_made, show_take, start_from_result
+from hangtime.bridge.takes.takes import show_take
 from hangtime.bridge.takes.write_result import combine, write_adapted_incrementally
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap

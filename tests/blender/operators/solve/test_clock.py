@@ -11,7 +11,7 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import current_action, present
-from hangtime.bridge.takes.takes import look_again
+from hangtime.bridge.results.look_again import look_again
 from hangtime.operators.solve import results as results_module
 from hangtime.operators.solve.results import AcceptOperator
 
