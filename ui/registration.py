@@ -87,6 +87,8 @@ def register() -> Callable[[], None]:
         leave_out_of_files(undo)
         for follow in (_follow_objects, watch.follow_takes):
             add_handler(undo, bpy.app.handlers.depsgraph_update_post, follow)
+        for changing in ("undo_post", "redo_post", "frame_change_post"):
+            add_handler(undo, getattr(bpy.app.handlers, changing), watch.forget_digests)
         add_handler(undo, bpy.app.handlers.load_post, session.forget_file)
         undo.callback(watch.forget)
         undo.callback(session.session().end)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Set
+from collections.abc import Iterable, Set
+from time import perf_counter
 from zlib import crc32
 
 import bpy
@@ -10,6 +11,7 @@ import numpy as np
 
 from ..action_slots import all_curves
 from .fcurves import column
+from .incremental import SLICE_S
 
 _BEZIER = 2  # of Blender's enum; what is above are named easings, such as Elastic
 _HANDLES = ("handle_left", "handle_right")
@@ -25,6 +27,58 @@ def keys_digest(action: bpy.types.Action) -> str:
     for curve in all_curves(action):
         found = curve_digest(curve, found)
     return str(found)
+
+
+class KeptDigests:
+    """Digests of actions' keys that are found once, in parts; by the actions' numbers in this
+    session.
+
+    Whoever keeps them for longer than nothing can change forgets them when keys may be others.
+    """
+
+    def __init__(self) -> None:
+        self._found: dict[int, str] = {}
+        self._part: tuple[int, int, int] = (0, 0, 0)  # of which action, how many curves, digest
+        self._under_way = False
+
+    def of(self, action: bpy.types.Action) -> str:
+        """The digest of an action's keys, which is found now where it is not known."""
+        uid = action.session_uid
+        if uid not in self._found:
+            self._found[uid] = keys_digest(action)
+        return self._found[uid]
+
+    def find(self, actions: Iterable[bpy.types.Action]) -> bool:
+        """Go on with the digests of actions, for a slice's time; whether all are known."""
+        until = perf_counter() + SLICE_S
+        self._under_way = not all(self._is_found(action, until) for action in actions)
+        return not self._under_way
+
+    def _is_found(self, action: bpy.types.Action, until: float) -> bool:
+        """Whether an action's digest is known by an instant, s, of Python's performance counter; at
+        least one curve is added."""
+        uid = action.session_uid
+        if uid in self._found:
+            return True
+        of, done, found = self._part
+        if of != uid:
+            done = found = 0
+        curves = all_curves(action)
+        for curve in curves[done:]:
+            done, found = done + 1, curve_digest(curve, found)
+            if perf_counter() > until:
+                break
+        self._part = uid, done, found
+        if done >= len(curves):
+            self._found[uid] = str(found)
+        return done >= len(curves)
+
+    def forget(self) -> bool:
+        """Keys may be others now. Returns whether their digests were being found."""
+        self._found.clear()
+        self._part = 0, 0, 0
+        under_way, self._under_way = self._under_way, False
+        return under_way
 
 
 def curve_digest(curve: bpy.types.FCurve, found: int = 0) -> int:

@@ -24,10 +24,11 @@ from ...solver.doctor.stance.feet import FootFault, FootFaultKind
 from ...solver.doctor.stretch import CUTTING, Span, belonging, is_clear
 from ..accessors import current_scene, source_of
 from ..armature.actions import recorded_action
+from ..armature.keys_digest import KeptDigests
 from ..armature.poses import frames_per_second
 from ..hidden_texts import HiddenText, entries, listed, number, spans_text, whole, word
 from ..properties.settings import HangtimeSettings, settings_of
-from ..results.digests import take_digest
+from ..results.digests import keyed_for, take_digest
 from ..rows.copying import rows_named
 from ..rows.finding import HangtimeFinding
 from .length_keys import stretching_bone
@@ -235,21 +236,28 @@ def rate_unrepaired(settings: HangtimeSettings) -> float:
     return frames_per_second(current_scene()) * applied(settings).time_scale
 
 
-def examined_key(armature: bpy.types.Object) -> str:
+def examined_key(armature: bpy.types.Object, known: KeptDigests | None = None) -> str:
     """What an examination is of: the recording's keys, the object's scale and the clock, both as
-    they are without repairs."""
+    they are without repairs. known: digests of keys that are up to date."""
     action = recorded_action(armature)
     if action is None:
         return ""
     clock = rate_unrepaired(settings_of(armature))
     scale = " ".join(f"{each:.4g}" for each in armature.scale.to_tuple())
-    return f"{take_digest(armature, action)} {clock:.4g} {scale}"
+    return f"{take_digest(armature, action, known)} {clock:.4g} {scale}"
 
 
-def look_at_examination(armature: bpy.types.Object) -> bool:
-    """Notes whether what was examined has changed; returns whether that is new."""
+def examined_actions(armature: bpy.types.Object) -> list[bpy.types.Action]:
+    """The actions whose keys `look_at_examination` asks for."""
+    action = recorded_action(armature) if settings_of(armature).examined else None
+    return keyed_for(action) if action is not None else []
+
+
+def look_at_examination(armature: bpy.types.Object, known: KeptDigests | None = None) -> bool:
+    """Notes whether what was examined has changed; returns whether that is new. known: digests of
+    keys that are up to date."""
     settings = settings_of(armature)
-    stale = bool(settings.examined) and settings.examined != examined_key(armature)
+    stale = bool(settings.examined) and settings.examined != examined_key(armature, known)
     if stale == settings.examination_stale:
         return False
     settings.examination_stale = stale

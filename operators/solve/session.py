@@ -7,6 +7,7 @@ from typing import Protocol
 import bpy
 from bpy.app.handlers import persistent
 
+from ...bridge.armature.keys_digest import KeptDigests
 from ...bridge.recipe.keys import KeyOptions
 from ...bridge.recipe.loop import LoopOptions
 from ...bridge.recipe.result import ResultOptions
@@ -64,7 +65,8 @@ class Session:
     motion that it found; the armature (its number) whose body something unseen carries, and boxes
     that would; of which armature, recording and bodies the controls were tried last, and pose
     them; what the last drag was about, or Analyze has prepared the next one for; frames a second
-    and metres per unit of the scene that was seen last; what the status bar says."""
+    and metres per unit of the scene that was seen last; digests of actions' keys, as long as these
+    cannot be others; what the status bar says."""
 
     solving: Solving | None = None
     failure: Failure | None = None
@@ -73,6 +75,7 @@ class Session:
     tried: tuple[int, str, tuple[str, ...]] | None = None
     dragged: Asked | None = None
     units: tuple[float, float] | None = None
+    digests: KeptDigests = field(default_factory=KeptDigests)
     running: list[Running] = field(default_factory=list)
     status_bar: StatusBar = field(default_factory=StatusBar)
 
@@ -91,6 +94,7 @@ class Session:
         """Ends what runs, without a word; for when the extension goes."""
         for operator in list(self.running):
             operator.leave()
+        self.digests.forget()
         self.best = self.failure = self.support = self.tried = self.dragged = None
 
 
