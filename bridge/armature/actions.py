@@ -14,10 +14,10 @@ from ..accessors import assigned_action, current_action, current_scene, mapped_s
 from ..properties.settings import settings_of
 from ..unkeyed import note_unkeyed
 from . import fcurves
-from .incremental import Incremental, complete, sample_incrementally
+from .incremental import Incremental, complete
 from .played import adopt_strip, playing_strip
 from .poses import Poses, sample
-from .read import recording_of, whole_frames
+from .read import record_incrementally, whole_frames
 from .strips import reach_as_strip, show_strip, strips_of, without_strips
 
 
@@ -52,10 +52,7 @@ def read_recorded_incrementally(
     """Read the recording, a few frames a slice."""
     frames = recorded_frames(armature, first, last, beyond)
     assert armature is not None
-    showing = showing_recorded(armature)
-    poses = yield from sample_incrementally(armature, frames, showing)
-    with showing():
-        return recording_of(armature, frames, poses)
+    return (yield from record_incrementally(armature, frames, showing_recorded(armature)))
 
 
 def recorded_frames(

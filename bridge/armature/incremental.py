@@ -9,16 +9,17 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
-from functools import partial
 from time import perf_counter
 from typing import TypeVar
 
 import bpy
 import numpy as np
 
-from ...solver.arrays import FloatArray
+from ...solver.arrays import FloatArray, IntArray
+from ..accessors import armature_data
 from .poses import Poses, sample
 
+R = TypeVar("R", FloatArray, IntArray)
 S = TypeVar("S")
 T = TypeVar("T")
 Incremental = Generator[float | None, None, T]
@@ -76,14 +77,16 @@ def complete(slices: Incremental[T]) -> T:
 
 
 def in_slices(
-    frames: FloatArray,
-    look: Callable[[FloatArray], T],
+    frames: R,
+    look: Callable[[R], T],
     showing: Callable[[], AbstractContextManager[object]] = nullcontext,
     fewest: int = FEWEST_FRAMES,
 ) -> Incremental[list[T]]:
-    """What `look` finds at frames (T,), a few a slice. showing: entered for each slice, such as to
-    let an armature perform another action meanwhile. fewest: a slice, where each frame takes
-    long."""
+    """What `look` finds at frames (T,), or at rows of a table of them, a few a slice.
+
+    showing: entered for each slice, such as to let an armature perform another action meanwhile.
+    fewest: a slice, where each frame takes long.
+    """
     found: list[T] = []
     at, count = 0, fewest
     while at < len(frames):
@@ -121,10 +124,13 @@ def sample_incrementally(
     showing: Callable[[], AbstractContextManager[object]] = nullcontext,
 ) -> Incremental[Poses]:
     """Sample poses, a few frames a slice. showing: as of `in_slices`."""
-    found = yield from in_slices(frames, partial(sample, armature), showing)
-    return Poses(
-        found[0].bones,
-        found[0].parents,
-        np.concatenate([part.object_to_world for part in found]),
-        np.concatenate([part.matrices for part in found]),
-    )
+    world = np.empty((len(frames), 4, 4))  # which slices fill: to join them takes long
+    matrices = np.empty((len(frames), len(armature_data(armature).bones), 4, 4))
+
+    def look(rows: IntArray) -> Poses:
+        seen = sample(armature, frames[rows])
+        world[rows], matrices[rows] = seen.object_to_world, seen.matrices
+        return seen.first
+
+    found = yield from in_slices(np.arange(len(frames)), look, showing)
+    return Poses(found[0].bones, found[0].parents, world, matrices)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 
@@ -29,6 +29,17 @@ class Poses:
     parents: tuple[int, ...]
     object_to_world: FloatArray
     matrices: FloatArray
+
+    @property
+    def first(self) -> Poses:
+        """The first instant alone."""
+        return Poses(self.bones, self.parents, self.object_to_world[:1], self.matrices[:1])
+
+    def of(self, bones: Sequence[str]) -> Poses:
+        """Some bones alone, as if all were roots."""
+        columns = [self.bones.index(each) for each in bones]
+        matrices = self.matrices[:, columns]
+        return Poses(tuple(bones), (-1,) * len(columns), self.object_to_world, matrices)
 
 
 def metres_per_unit(scene: bpy.types.Scene) -> float:
@@ -72,9 +83,10 @@ def sample(armature: bpy.types.Object, frames: FloatArray) -> Poses:
     """
     scene = current_scene()
     bones = _parents_first(armature)
-    columns = [pose_of(armature).bones.find(bone.name) for bone in bones]
+    posed_as = {name: column for column, name in enumerate(pose_of(armature).bones.keys())}
     names = tuple(bone.name for bone in bones)
-    parents = tuple(names.index(b.parent.name) if b.parent else -1 for b in bones)
+    columns, index = [posed_as[name] for name in names], {name: i for i, name in enumerate(names)}
+    parents = tuple(index[bone.parent.name] if bone.parent else -1 for bone in bones)
     world = np.empty((len(frames), 4, 4))
     matrices = np.empty((len(frames), len(bones), 4, 4))
     flat = np.empty(16 * len(bones), np.float32)

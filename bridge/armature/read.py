@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 
 import bpy
 import numpy as np
 from mathutils import Vector
 
-from ...solver.arrays import FloatArray
+from ...solver.arrays import FloatArray, IntArray
 from ...solver.data.faults import BadScale, NoArmature, NoBones, NonFiniteKey
 from ...solver.data.recording import Bone, Recording
 from ..accessors import armature_data, current_action, current_scene, pose_of, present
@@ -16,6 +17,7 @@ from ..libraries import lost_character, lost_file
 from ..properties.of_actions.known_contacts import known_at
 from . import fcurves
 from .channels import proper
+from .incremental import Incremental, in_slices
 from .played import leaders_of, require_unblended, require_unstarred, strip_time, why_no_action
 from .poses import Poses, followed_bone, frames_per_second, metres_per_unit, sample
 
@@ -125,20 +127,56 @@ def record(armature: bpy.types.Object, frames: FloatArray) -> Recording:
     return recording_of(armature, frames, sample(armature, frames))
 
 
+def record_incrementally(
+    armature: bpy.types.Object,
+    frames: FloatArray,
+    showing: Callable[[], AbstractContextManager[object]] = nullcontext,
+) -> Incremental[Recording]:
+    """The same, a few frames a slice. showing: as of `in_slices`. Raises as `record`."""
+    count = len(armature_data(armature).bones)
+    heads, rotations = np.empty((len(frames), count, 3)), np.empty((len(frames), count, 3, 3))
+
+    def look(rows: IntArray) -> Poses:
+        poses = sample(armature, frames[rows])
+        heads[rows], rotations[rows] = _placed(armature, frames[rows], poses)
+        return poses.first
+
+    found = yield from in_slices(np.arange(len(frames)), look, showing)
+    with showing():
+        return _recording(armature, frames, found[0], heads, rotations)
+
+
 def recording_of(armature: bpy.types.Object, frames: FloatArray, poses: Poses) -> Recording:
     """Convert poses sampled at frames (T,) to a Recording. Raises NonFiniteKey, BadScale."""
+    return _recording(armature, frames, poses, *_placed(armature, frames, poses))
+
+
+def _placed(
+    armature: bpy.types.Object, frames: FloatArray, poses: Poses
+) -> tuple[FloatArray, FloatArray]:
+    """Heads (T, B, 3) m and rotations (T, B, 3, 3) in the world, of poses at frames (T,)."""
     _require_uniform_scale(armature, poses.object_to_world)
-    metres = metres_per_unit(current_scene())
     world = poses.object_to_world[:, None] @ poses.matrices
     _require_finite_poses(poses, frames, world)
+    return world[..., :3, 3] * metres_per_unit(current_scene()), proper(world[..., :3, :3])
+
+
+def _recording(
+    armature: bpy.types.Object,
+    frames: FloatArray,
+    poses: Poses,
+    heads: FloatArray,
+    rotations: FloatArray,
+) -> Recording:
+    """Of heads and rotations (T, B, ...) at frames (T,). poses: of the first of these, at least."""
     action = present(current_action(armature))
     return Recording(
         name=action.name,
         bones=rest_bones(armature, poses),
         frames=frames,
         times=(frames - frames[0]) / frames_per_second(current_scene()),
-        heads=world[..., :3, 3] * metres,
-        rotations=proper(world[..., :3, :3]),
+        heads=heads,
+        rotations=rotations,
         known=known_at(action, (frames[0], frames[-1]), strip_time(armature, action)),
     )
 

@@ -26,11 +26,13 @@ def missed_contacts(
     """
     frames = solved.frames
     poses = yield from sample_incrementally(armature, frames)
-    shown, rate = recording_of(armature, frames, poses), frames_per_second(current_scene())
+    told = [each for each in schedule.contacts if each.point in solved.contacts]
+    touching = poses.of(sorted({each.bone for each in told}))
+    shown, rate = recording_of(armature, frames, touching), frames_per_second(current_scene())
     times, missed = (frames - frames[0]) / rate, []
-    for each in schedule.contacts:
+    for each in told:
         rows = np.flatnonzero((times >= each.start) & (times <= each.end))
-        if each.point not in solved.contacts or not len(rows):
+        if not len(rows):
             continue
         bone = shown.index(each.bone)
         at = shown.heads[rows, bone] + shown.rotations[rows, bone] @ each.offset

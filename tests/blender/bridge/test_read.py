@@ -9,9 +9,12 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from hangtime.bridge.armature import fcurves
+from hangtime.bridge.armature import fcurves, incremental, read
+from hangtime.bridge.armature.channels import proper
+from hangtime.bridge.armature.incremental import FEWEST_FRAMES
 from hangtime.bridge.armature.poses import evaluated
-from hangtime.bridge.armature.read import read_recording
+from hangtime.bridge.armature.read import read_recording, record_incrementally
+from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.faults import (
     BadScale,
     NoAction,
@@ -124,6 +127,29 @@ def test_what_is_seen_already_is_not_told_so_again() -> None:
 
     with evaluated([Seen()]):
         pass
+
+
+def test_what_is_read_in_parts_is_converted_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+    armature = animated_rig()
+    place_object(armature)
+    whole, converted = read_recording(armature), []
+
+    def counted(matrices: FloatArray) -> FloatArray:
+        converted.append(len(matrices))
+        return proper(matrices)
+
+    monkeypatch.setattr(incremental, "SLICE_S", 0.0)
+    monkeypatch.setattr(read, "proper", counted)
+    parts = record_incrementally(armature, whole.frames)
+    try:
+        while True:
+            next(parts)
+    except StopIteration as end:
+        found = end.value
+    assert max(converted) <= FEWEST_FRAMES < len(whole.frames)
+    np.testing.assert_array_equal(found.heads, whole.heads)
+    np.testing.assert_array_equal(found.rotations, whole.rotations)
+    assert [bone.name for bone in found.bones] == [bone.name for bone in whole.bones]
 
 
 def test_reads_a_single_frame() -> None:
