@@ -119,7 +119,8 @@ def evaluated(objects: Iterable[bpy.types.Object]) -> Iterator[None]:
             _set(undo, thing, "hide_viewport", value=False)
             if isinstance(thing.data, bpy.types.Armature):
                 _set(undo, thing.data, "pose_position", value="POSE")
-            if thing.name not in scene.collection.objects:
+            # What is seen is evaluated anyway; to link it, Blender goes through the whole scene.
+            if thing.name not in scene.collection.objects and not thing.visible_get():
                 scene.collection.objects.link(thing)
                 undo.callback(scene.collection.objects.unlink, thing)
         yield

@@ -82,10 +82,7 @@ def test_reads_what_constraints_make_of_the_keys() -> None:
 def test_reads_the_hidden_and_the_resting_alike_and_leaves_the_scene() -> None:
     armature = animated_rig()
     shown = read_recording(armature)
-    collection = bpy.data.collections.new("Excluded")
-    bpy.context.scene.collection.children.link(collection)
-    collection.objects.link(armature)
-    bpy.context.scene.collection.objects.unlink(armature)
+    collection = in_collection(armature)
     bpy.context.view_layer.layer_collection.children[0].exclude = True
     armature.hide_viewport = True
     armature.data.pose_position = "REST"
@@ -127,6 +124,44 @@ def test_what_is_seen_already_is_not_told_so_again() -> None:
 
     with evaluated([Seen()]):
         pass
+
+
+def in_collection(thing: bpy.types.Object) -> bpy.types.Collection:
+    """A collection that holds an object, which the scene's own no longer does."""
+    collection = bpy.data.collections.new("Characters")
+    bpy.context.scene.collection.children.link(collection)
+    collection.objects.link(thing)
+    bpy.context.scene.collection.objects.unlink(thing)
+    bpy.context.view_layer.update()
+    return collection
+
+
+def test_what_is_seen_in_a_collection_is_read_where_it_is() -> None:
+    """To link it elsewhere for each slice, Blender would go through all objects of the scene."""
+    armature = animated_rig()
+    shown = read_recording(armature)
+    in_collection(armature)
+    with evaluated([armature]):
+        assert armature.name not in bpy.context.scene.collection.objects
+    np.testing.assert_array_equal(read_recording(armature).heads, shown.heads)
+
+
+@pytest.mark.parametrize("how", ["eye", "collection's eye", "collection's screen", "armature's"])
+def test_reads_what_is_hidden_in_a_collection(how: str) -> None:
+    armature = animated_rig()
+    shown = read_recording(armature)
+    collection = in_collection(armature)
+    layer = bpy.context.view_layer.layer_collection.children[collection.name]
+    if how == "eye":
+        armature.hide_set(True)
+    elif how == "collection's eye":
+        layer.hide_viewport = True
+    elif how == "collection's screen":
+        collection.hide_viewport = True
+    else:
+        armature.hide_viewport = True
+    np.testing.assert_array_equal(read_recording(armature).heads, shown.heads)
+    np.testing.assert_array_equal(read_recording(armature).rotations, shown.rotations)
 
 
 def test_what_is_read_in_parts_is_converted_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
