@@ -136,14 +136,13 @@ def record_incrementally(
     count = len(armature_data(armature).bones)
     heads, rotations = np.empty((len(frames), count, 3)), np.empty((len(frames), count, 3, 3))
 
-    def look(rows: IntArray) -> Poses:
+    def look(rows: IntArray) -> Recording | None:
         poses = sample(armature, frames[rows])
         heads[rows], rotations[rows] = _placed(armature, frames[rows], poses)
-        return poses.first
+        return None if rows[0] else _recording(armature, frames, poses, heads, rotations)
 
-    found = yield from in_slices(np.arange(len(frames)), look, showing)
-    with showing():
-        return _recording(armature, frames, found[0], heads, rotations)
+    recording, *_ = yield from in_slices(np.arange(len(frames)), look, showing)
+    return present(recording)  # which later slices have filled
 
 
 def recording_of(armature: bpy.types.Object, frames: FloatArray, poses: Poses) -> Recording:
