@@ -45,6 +45,7 @@ def canvas(monkeypatch: pytest.MonkeyPatch) -> Canvas:
     monkeypatch.setattr(paint, "upload", upload)
     monkeypatch.setattr(paint, "paint", painted)
     monkeypatch.setattr(paint, "write", shown.texts.extend)
+    monkeypatch.setattr(paint, "compile_shaders", lambda _region: None)
     return shown
 
 
