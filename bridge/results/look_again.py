@@ -9,7 +9,7 @@ from ..armature.keys_digest import KeptDigests
 from ..fake_users import guard
 from ..properties.action import HangtimeAction, action_settings
 from ..properties.settings import HangtimeSettings, settings_of
-from ..rows.copying import settings_digest, settings_targets
+from ..rows.copying import settings_digest
 from ..scene.surfaces_digest import Conditions, surfaces_digest
 from ..takes.takes import ListedTake, own_result, takes_of
 from .digests import keyed_for, own_digest, take_digest
@@ -81,11 +81,8 @@ def _asks_the_same(edit: HangtimeSettings, kept: HangtimeAction) -> bool:
     """Whether an edit is what a result was made with. What is switched off asks for nothing, as do
     linked rows that an edit lacks; results of earlier versions count it."""
     targets = [row.target for row in kept.asked_targets]
-    return any(
-        settings_targets(edit, NOT_ASKED, off=off) == targets
-        and settings_digest(edit, NOT_ASKED, off=off) == str(kept.asked_key)
-        for off in (False, True)
-    )
+    asked = str(kept.asked_key), targets
+    return any(settings_digest(edit, NOT_ASKED, off=off) == asked for off in (False, True))
 
 
 def polished_result(armature: bpy.types.Object) -> bpy.types.Action | None:

@@ -19,7 +19,6 @@ from ..rows.copying import (
     held_settings,
     put_settings,
     settings_digest,
-    settings_targets,
 )
 from ..scene.surfaces_digest import Conditions, surfaces_digest
 from ..takes.span import ResultSpan
@@ -54,7 +53,7 @@ class AskedSettings:
         armature = settings.id_data
         assert isinstance(armature, bpy.types.Object)
         surfaces = surfaces_digest(settings, armature, {})
-        key = settings_digest(settings, NOT_ASKED, off=False)
+        key, _ = settings_digest(settings, NOT_ASKED, off=False)
         return AskedSettings(held, key, surfaces, Conditions.of(armature).as_text())
 
 
@@ -77,7 +76,8 @@ def note_made(
     made.asked_key, made.surfaces_key = asked.key, asked.surfaces
     made.conditions = asked.conditions
     made.asked_targets.clear()
-    for target in settings_targets(made.edit, NOT_ASKED, off=False):
+    _, targets = settings_digest(made.edit, NOT_ASKED, off=False)
+    for target in targets:
         made.asked_targets.add().target = target
     made.take_key, made.own_key = take_digest(armature, source), own_digest(action)
     made.stale, made.polished, made.holds_polish = "", False, False

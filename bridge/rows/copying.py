@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 from zlib import crc32
 
@@ -33,14 +34,14 @@ class _Pointer:
 
 
 def copy_settings(
-    source: bpy.types.PropertyGroup, target: bpy.types.PropertyGroup, skip: Collection[str] = ()
+    source: bpy.types.PropertyGroup, target: bpy.types.PropertyGroup, skip: Sequence[str] = ()
 ) -> None:
     """Make everything stored in a group that of another of its class. skip: names left alone, of
     rows too."""
     put_settings(held_settings(source, skip), target)
 
 
-def held_settings(group: Any, skip: Collection[str] = ()) -> HeldSettings:
+def held_settings(group: Any, skip: Sequence[str] = ()) -> HeldSettings:
     """Everything that is stored in a group, to be put into one later. skip: names left out, of rows
     too."""
     held: HeldSettings = {}
@@ -99,30 +100,17 @@ def _plain(group: Any, name: str) -> object:
 
 
 def settings_digest(
-    group: bpy.types.PropertyGroup, skip: Collection[str] = (), *, off: bool = True
-) -> str:
-    """A number for everything that is stored in a group, and what its texts say; another where
-    something differs. Of a data-block that it points to counts only whether there is one: which,
-    `settings_targets` tells. off: whether rows that are switched off count."""
-    return str(crc32(repr(_stored(group, skip, off=off)).encode()))
+    group: bpy.types.PropertyGroup, skip: Sequence[str] = (), *, off: bool = True
+) -> tuple[str, list[bpy.types.ID]]:
+    """A number for everything that is stored in a group, and what its texts say, another where
+    something differs; and the data-blocks that it points to, texts aside, in an order that is
+    always the same, of which the number tells only whether they are there.
 
-
-def settings_targets(
-    group: bpy.types.PropertyGroup, skip: Collection[str] = (), *, off: bool = True
-) -> list[bpy.types.ID]:
-    """The data-blocks that a group points to, texts aside, in an order that is always the same.
-    off: as of `settings_digest`."""
-    found: list[bpy.types.ID] = []
-    for name in _names(group, skip):
-        what, value = group.bl_rna.properties[name], getattr(group, name)
-        if what.type == "COLLECTION":
-            rows = _counted(value, off=off)
-            found += [each for row in rows for each in settings_targets(row, skip, off=off)]
-        elif _is_group(group, what):
-            found += settings_targets(value, skip, off=off)
-        elif what.type == "POINTER" and not isinstance(value, bpy.types.Text | None):
-            found.append(value)
-    return found
+    off: whether rows that are switched off count.
+    """
+    targets: list[bpy.types.ID] = []
+    stored = _stored(group, tuple(skip), targets, off=off)
+    return str(crc32(repr(stored).encode())), targets
 
 
 def _is_group(owner: Any, what: bpy.types.Property) -> bool:
@@ -132,31 +120,42 @@ def _is_group(owner: Any, what: bpy.types.Property) -> bool:
     return isinstance(getattr(owner, what.identifier), bpy.types.PropertyGroup)
 
 
-def _names(group: bpy.types.PropertyGroup, skip: Collection[str]) -> list[str]:
+def _names(group: bpy.types.PropertyGroup, skip: Sequence[str]) -> tuple[str, ...]:
     """Names of what is stored in a group."""
-    computed = getattr(group, "COMPUTED", ())
-    names = (each.identifier for each in group.bl_rna.properties)
-    return [name for name in names if name not in {"rna_type", *computed, *skip}]
+    # classes are hashable, whatever the stubs say
+    return _names_in(type(group), tuple(skip))  # type: ignore[arg-type]
+
+
+@cache
+def _names_in(kind: type[bpy.types.PropertyGroup], skip: tuple[str, ...]) -> tuple[str, ...]:
+    """In a class, which looks are for again and again: each has many groups."""
+    left_out = {"rna_type", *getattr(kind, "COMPUTED", ()), *skip}
+    names = (each.identifier for each in kind.bl_rna.properties)
+    return tuple(name for name in names if name not in left_out)
 
 
 def _counted(rows: Any, *, off: bool) -> list[Any]:
     return [row for row in rows if off or getattr(row, "used", True)]
 
 
-def _stored(group: Any, skip: Collection[str], *, off: bool) -> list[tuple[str, object]]:
+def _stored(
+    group: Any, skip: tuple[str, ...], targets: list[bpy.types.ID], *, off: bool
+) -> list[tuple[str, object]]:
+    """What is stored in a group. targets: to which the data-blocks are added that it points to."""
     found: list[tuple[str, object]] = []
     for name in _names(group, skip):
         what = group.bl_rna.properties[name]
         value: Any = getattr(group, name) if what.type in {"COLLECTION", "POINTER"} else None
         if what.type == "COLLECTION":
             rows = _counted(value, off=off)
-            found.append((name, [_stored(row, skip, off=off) for row in rows]))
-        elif _is_group(group, what):
-            found.append((name, _stored(value, skip, off=off)))
+            found.append((name, [_stored(row, skip, targets, off=off) for row in rows]))
+        elif isinstance(value, bpy.types.PropertyGroup):
+            found.append((name, _stored(value, skip, targets, off=off)))
         elif isinstance(value, bpy.types.Text):
             found.append((name, value.as_string()))
         elif what.type == "POINTER":
             found.append((name, value is not None))  # whatever the artist calls it
+            targets += [] if value is None else [value]
         elif group.is_property_set(name):
             many, value = getattr(what, "is_array", False), _plain(group, name)
             if value != (tuple(what.default_array) if many else what.default):
