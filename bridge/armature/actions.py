@@ -10,7 +10,14 @@ import bpy
 
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import Recording
-from ..accessors import assigned_action, current_action, current_scene, mapped_strip, played_source
+from ..accessors import (
+    assigned_action,
+    current_action,
+    current_scene,
+    mapped_strip,
+    played_source,
+    root_of,
+)
 from ..properties.settings import settings_of
 from ..unkeyed import note_unkeyed
 from . import fcurves
@@ -86,6 +93,8 @@ def show(
     """Let the armature perform an action, in its strip where it has one, Hangtime's or the
     artist's; the pose follows."""
     slot, shown = slot or fcurves.slot_identifier(armature), current_action(armature)
+    if action is not None and shown is not None:
+        _note_again(armature, action, shown)
     if action is not None and strips_of(armature, action):
         if shown is not None:
             adopt_strip(armature, shown)
@@ -104,9 +113,18 @@ def evaluate() -> None:
 
 
 def note_take(armature: bpy.types.Object, result: bpy.types.Action, take: bpy.types.Action) -> None:
-    """Keep with a result, before it is ever performed, what only it has keys for."""
+    """Keep with a result, before it is ever performed, what its recording leaves alone."""
     with showing_action(armature, take):
-        note_unkeyed(armature, result, take)
+        note_unkeyed(armature, result, take, root_of(take))
+
+
+def _note_again(
+    armature: bpy.types.Object, result: bpy.types.Action, shown: bpy.types.Action
+) -> None:
+    """Keep that with a result that is to be shown, too: the artist may have set it anew since."""
+    recording = root_of(result)
+    if result not in (shown, recording) and recording == root_of(shown) and result.library is None:
+        note_unkeyed(armature, result, shown, recording)
 
 
 @contextmanager

@@ -9,9 +9,11 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import current_action
 from hangtime.bridge.armature import fcurves
+from hangtime.bridge.armature.actions import recorded_poses
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.armature.read import read_recording
+from hangtime.bridge.polish.samples import edited_action
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.results.made import note_made
 from hangtime.bridge.results.start import start_from_result
@@ -86,3 +88,73 @@ def test_a_result_of_a_result_gives_back_what_the_first_take_has_no_keys_for(
     adapted(armature, WrittenAs.ACTION)
     show_take(armature, take)
     np.testing.assert_array_equal(sample(armature, FRAMES).matrices, before)
+
+
+POLISH = (
+    ('pose.bones["finger"].location', 0, 0.3),
+    ('pose.bones["finger"].constraints["Limit"].influence', 0, 1.0),
+    ('pose.bones["twist"].scale', 1, 1.4),
+    ('pose.bones["twist"]["bend"]', 0, 4.0),
+)
+
+
+def let_be_polished(armature: bpy.types.Object) -> None:
+    """Give it what the take leaves alone, and only a result will have keys for: a scaled twist, a
+    constraint, and a property that a driver bends the finger by."""
+    finger, twist = (armature.pose.bones[each] for each in ("finger", "twist"))
+    limit = finger.constraints.new("LIMIT_ROTATION")
+    limit.name, limit.influence, twist.scale.y, twist["bend"] = "Limit", 0.5, 1.2, 2
+    driver = finger.driver_add("scale", 0).driver
+    variable = driver.variables.new()
+    variable.targets[0].id = armature
+    variable.targets[0].data_path = 'pose.bones["twist"]["bend"]'
+    driver.expression = "1.0 + 0.1 * var"
+
+
+def polish(armature: bpy.types.Object, result: bpy.types.Action) -> None:
+    """Give a result keys by hand for what its take leaves alone, and show where these count."""
+    curves = fcurves.holder_in(edited_action(result), fcurves.slot_identifier(armature))
+    for path, index, value in POLISH:
+        fcurves.ensured(curves, path, index, "").keyframe_points.insert(25.0, value)
+    bpy.context.scene.frame_set(25)
+
+
+def unkeyed(armature: bpy.types.Object) -> list[object]:
+    """What the channels of the polish are now."""
+    found = ((armature.path_resolve(path), index) for path, index, _ in POLISH)
+    return [value[index] if hasattr(value, "__len__") else value for value, index in found]
+
+
+@pytest.mark.parametrize("written_as", [WrittenAs.ACTION, WrittenAs.STRIP, WrittenAs.COMBINE])
+def test_polish_of_what_the_take_has_no_keys_for_is_not_on_the_take(
+    armature: bpy.types.Object, written_as: WrittenAs
+) -> None:
+    let_be_polished(armature)
+    take, before, were = current_action(armature), sample(armature, FRAMES), unkeyed(armature)
+    result = adapted(armature, written_as)
+    polish(armature, result)
+    assert unkeyed(armature) != were
+    read = recorded_poses(armature, FRAMES)  # while the result is shown, as Adapt reads it
+    np.testing.assert_array_equal(read.matrices, before.matrices)
+    bpy.context.scene.frame_set(25)
+    show_take(armature, take)
+    assert unkeyed(armature) == were
+    assert type(armature.pose.bones["twist"]["bend"]) is int
+    np.testing.assert_array_equal(sample(armature, FRAMES).matrices, before.matrices)
+    show_take(armature, result)
+    bpy.context.scene.frame_set(25)
+    assert unkeyed(armature) != were
+
+
+def test_what_is_set_by_hand_where_nothing_has_keys_stays(armature: bpy.types.Object) -> None:
+    let_be_polished(armature)
+    take, result = current_action(armature), adapted(armature, WrittenAs.ACTION)
+    finger, twist = (armature.pose.bones[each] for each in ("finger", "twist"))
+    show_take(armature, take)
+    finger.location.x = 0.05  # which the result will have keys for
+    show_take(armature, result)
+    twist.scale.z = 1.1
+    polish(armature, result)
+    show_take(armature, take)
+    assert finger.location.x == pytest.approx(0.05)
+    assert twist.scale.z == pytest.approx(1.1)
