@@ -60,17 +60,16 @@ def put_on(
     slot: str | None,
     place: PlacedPolish,
     before: Written,
-    owned: Collection[str] | None,
+    owned: Collection[str],
 ) -> None:
     """Put polish on a new result's slot; channels that physics does not own get the edited keys
-    themselves. before: the polished result as it was made. owned: paths of those that it does,
-    None for all."""
+    themselves. before: the polished result as it was made. owned: paths of those that it does."""
     polish, new = place.polish, place.new
     holder, edited = fcurves.holder_in(action, slot), edited_action(polish.result)
     source = fcurves.holder_in(edited, slot) if edited == polish.result else None
     assert holder is not None
     for offset in polish.offsets:
-        alone = source is not None and owned is not None and offset.path not in owned
+        alone = source is not None and offset.path not in owned
         if not (alone and _copied(holder, source, offset, place, before)):
             _bake(holder, offset, new, offset.at(polish.frames, place.at))
     action.update_tag()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import bpy
@@ -10,14 +11,12 @@ from ...solver.arrays import FloatArray
 from ...solver.data.contacts import ContactSchedule
 from ..armature import fcurves
 from ..armature.incremental import Incremental
-from ..controls.driven import is_driven
 from ..properties.action import action_settings
 from ..properties.settings import settings_of
 from ..repairs.analysis_key import wanted_range
 from ..results.look_again import polished_result
 from ..rows.choices import BodyKind
 from ..takes.options import loop_options
-from ..takes.owned import owned_channels, placing_channels
 from ..takes.take_time import TakeTime
 from .hand_offsets import Polish, polish_of, without
 from .pins import MovedPin, PinnedFrames, contact_pins, point_pins
@@ -49,17 +48,16 @@ class Renewal:
     def put_on(
         self,
         action: bpy.types.Action,
-        bones: tuple[str, ...],
-        companions: tuple[str, ...],
+        owned: Collection[str],
         time: TakeTime,
         schedule: ContactSchedule,
         rate: float,
     ) -> Incremental[tuple[MovedPin, ...]]:
         """Put the polish on a new result, which the armature shows; tells which pins that moves.
 
-        bones: the bodies', the pelvis first. companions: others that go along. time: where the
-        take's frames are in it. schedule, rate (frames a s): its contacts, from its first adapted
-        frame on.
+        owned: paths of the curves that were written, whether bodies', controls' or of what goes
+        along. time: where the take's frames are in it. schedule, rate (frames a s): its contacts,
+        from its first adapted frame on.
         """
         if self.polish is None:
             return ()
@@ -69,11 +67,6 @@ class Renewal:
         points = [*contact_pins(schedule, first, rate), *point_pins(self.armature, time)]
         pinned = PinnedFrames.of(points, place.frames)
         was = yield from pinned.poses(self.armature)
-        owned = None
-        if not is_driven(self.armature, bones):  # else it is not known which controls were written
-            owned = {channel.path for channel in owned_channels(self.armature, bones)}
-            for bone in companions:
-                owned.update(channel.path for channel in placing_channels(self.armature, bone))
         put_on(action, slot, place, before, owned)
         self.put = place
         now = yield from pinned.poses(self.armature)

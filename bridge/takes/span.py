@@ -79,10 +79,10 @@ class WrittenTake:
 
     time: where the take's frames are in the result. applied: bones whose curves had modifiers, or
     were muted, and are keys now. held: bones that moved joints within the body, and hold still now.
-    slide: m, by which the way back makes standing feet slide. companions: bones outside of the body
-    that went along with it.
     controls: how near the bodies are that controls pose, and rig: these controls; None where bodies
-    have keys of their own. blends: how they move the hips, where there are frames to blend.
+    have keys of their own. owned: paths of the curves that have keys of the result's own. slide: m,
+    by which the way back makes standing feet slide. blends: how they move the hips, where there are
+    frames to blend. companions: bones outside of the body that went along with it.
     """
 
     span: ResultSpan
@@ -93,6 +93,7 @@ class WrittenTake:
     held: tuple[str, ...] = ()
     controls: KeptByControls | None = None
     rig: ControlRig | None = None
+    owned: frozenset[str] = frozenset()
     slide: float = 0.0
     blends: tuple[BlendReport, ...] = ()
     companions: Companions = field(default_factory=Companions)

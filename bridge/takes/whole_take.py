@@ -154,7 +154,9 @@ def write_take(
     blends = yield from _with_slides(copy, was[0], blends, motion.touching)
     bones_held = tuple(dict.fromkeys(channel.bone for channel in held))
     about = plan.span, plan.moved, plan.back, plan.time
-    return WrittenTake(*about, done, bones_held, kept, rig, slide, blends, company)
+    written = (*owned, *roots, *held, *(each for each in following if each.bone in company.bones))
+    paths = frozenset(channel.path for channel in written)
+    return WrittenTake(*about, done, bones_held, kept, rig, paths, slide, blends, company)
 
 
 def _root_bases(

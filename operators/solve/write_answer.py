@@ -25,6 +25,7 @@ from ...bridge.results.made import adapted_spans, note_made
 from ...bridge.rows.choices import After, ContactMarkers, WrittenAs
 from ...bridge.rows.phases import roles_in
 from ...bridge.scene.played_end import play_longer
+from ...bridge.takes.owned import owned_channels
 from ...bridge.takes.plan import AdaptedMotion
 from ...bridge.takes.span import ResultSpan
 from ...bridge.takes.take_time import TakeTime
@@ -159,8 +160,9 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     try:
         yield from tell_missed(armature, armature, action, answer)
         rate = answer.report.recording.frames_per_second
-        bones, along = answer.track.bones, () if written is None else written.companions.bones
-        moved = yield from renewal.put_on(action, bones, along, time, answer.schedule, rate)
+        own = owned_channels(armature, answer.track.bones)
+        owned = {channel.path for channel in own} if written is None else written.owned
+        moved = yield from renewal.put_on(action, owned, time, answer.schedule, rate)
         tell_polish(armature, action, renewal, moved)
         rig = written.rig if written is not None else None
         yield from write_keys(armature, armature, action, answer, asked.keys, rig)

@@ -18,6 +18,7 @@ from hangtime.bridge.polish.renewal import Renewal
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.results.made import note_made
 from hangtime.bridge.rows.choices import After, WrittenAs
+from hangtime.bridge.takes.owned import owned_channels
 from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.take_time import TakeTime
 from hangtime.bridge.takes.takes import show_take
@@ -75,9 +76,9 @@ def adapt(
     motion = AdaptedMotion(track, times, None, chosen)
     action, written = complete(write_adapted_incrementally(armature, motion))
     time = written.time if written is not None else TakeTime.of(times, 1.0)
-    moved = complete(
-        renewal.put_on(action, rigs.MOVING, (), time, ContactSchedule((), 1.0, 0.0), 24.0)
-    )
+    own = {channel.path for channel in owned_channels(armature, rigs.MOVING)}
+    owned = own if written is None else written.owned
+    moved = complete(renewal.put_on(action, owned, time, ContactSchedule((), 1.0, 0.0), 24.0))
     if chosen.written_as is WrittenAs.COMBINE:
         combine(armature, action, chosen.after)
     note_made(armature, action, written.span if written is not None else None, time.later)
