@@ -13,7 +13,9 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
+from ...solver.analysis.motion_sketch import MotionSketch
 from ...solver.data.faults import ChangedMeanwhile
+from ...solver.data.recording import Recording
 from ..accessors import armature_data, pose_of
 from ..armature.actions import recorded_action
 from ..armature.fcurves import holder_in, slot_identifier
@@ -31,6 +33,7 @@ _TOLD = {  # by Blender: of the frame that is shown, and of the slots that an ac
 _DIGITS = 3  # Blender units, and of axes, which going in and out of edit mode turns by 1e-6
 
 BONES, KEYS, PLACE = "its bones", "its keys", "its place"
+_FEW = 3  # bones that are named
 
 
 @dataclass(frozen=True)
@@ -68,11 +71,25 @@ class AnalysedState:
         return (*rate, *_placed(now, then), *told)
 
 
-def changed_since_analysis(armature: bpy.types.Object) -> tuple[str, ...]:
-    """In words, the parts that are others than were analysed; nothing where no earlier ones were
-    kept."""
-    before = STATE.of(settings_of(armature).analysed_state)
-    return () if before is None else AnalysedState.of(armature).since(before)
+def changed_since_analysis(armature: bpy.types.Object, recording: Recording) -> tuple[str, ...]:
+    """In words, the parts that are others than were analysed, where there are none the poses of the
+    recording; nothing where no earlier ones were kept."""
+    settings = settings_of(armature)
+    before = STATE.of(settings.analysed_state)
+    parts = () if before is None else AnalysedState.of(armature).since(before)
+    return parts or posed_otherwise(MotionSketch.from_text(settings.analysed_motion), recording)
+
+
+def posed_otherwise(before: MotionSketch | None, recording: Recording) -> tuple[str, ...]:
+    """In words, the bones that a recording poses otherwise than a motion before; nothing where that
+    was of other bones or frames, or is not known."""
+    apart = None if before is None else before.apart(MotionSketch.of(recording))
+    if apart is None or not apart.bones:
+        return ()
+    names = [recording.bones[bone].name for bone in apart.bones]
+    more = len(names) - _FEW
+    told = ", ".join(names[:_FEW]) + (f" and {more} more" if more > 0 else "")
+    return (f"the pose of {told}, most at frame {recording.frames[apart.frame]:g}",)
 
 
 def require_in_place(armature: bpy.types.Object) -> None:

@@ -274,7 +274,7 @@ def _require_analysed(armature: bpy.types.Object, recording: Recording) -> None:
             raise RateChanged(*rates, while_solving=False)
         if spans is not None:
             raise SpanChanged(*spans)
-    changed = changed_since_analysis(armature)
+    changed = changed_since_analysis(armature, recording)
     raise ChangedMeanwhile(armature.name, while_solving=False, changed=changed)
 
 

@@ -19,7 +19,7 @@ from ...bridge.properties.action import action_settings
 from ...bridge.properties.of_actions.known_contacts import SolvedContacts, keep_contacts
 from ...bridge.properties.settings import settings_of
 from ...bridge.recipe.result import require_return_after
-from ...bridge.repairs.analysed_state import AnalysedState
+from ...bridge.repairs.analysed_state import AnalysedState, posed_otherwise
 from ...bridge.repairs.analysis_key import SAME_RATE
 from ...bridge.results.made import adapted_spans, note_made
 from ...bridge.rows.choices import After, ContactMarkers, WrittenAs
@@ -31,9 +31,10 @@ from ...bridge.takes.span import ResultSpan
 from ...bridge.takes.take_time import TakeTime
 from ...bridge.takes.takes import derive, free_name
 from ...bridge.takes.write_result import combine, lay_in_slot, write_adapted_incrementally
+from ...solver.analysis.motion_sketch import MotionSketch
 from ...solver.body.proportions import changed_recording
 from ...solver.data.faults import ChangedMeanwhile, EditedMeanwhile, Fault, RateChanged
-from ...solver.data.recording import same_motion
+from ...solver.data.recording import Recording, same_motion
 from ...solver.data.solver_options import Method
 from ...solver.worker.protocol import Adapted
 from ..words.headline import blend_lines, slide_lines
@@ -246,14 +247,17 @@ def _unchanged(asked: Asked) -> Incremental[bpy.types.Object]:
             reading = read_recorded_incrementally(armature, frames[0], frames[-1])
             now = yield from steady(armature, reading)
         except Fault as fault:  # another action, a scale: whatever it is, it is new
-            raise _changed(asked, armature) from fault
+            raise _changed(asked, armature, None) from fault
         if same_motion(replace(now, times=asked.recording.times), asked.recording):
             return armature
-    raise _changed(asked, armature)
+        raise _changed(asked, armature, now)
+    raise _changed(asked, armature, None)
 
 
-def _changed(asked: Asked, armature: bpy.types.Object) -> ChangedMeanwhile:
-    """What is to be said of an armature, by its present name, that is another than was asked
-    about."""
+def _changed(asked: Asked, armature: bpy.types.Object, now: Recording | None) -> ChangedMeanwhile:
+    """What is to be said of an armature, by its present name, that is another than was asked about.
+    now: its recording, where that can be read."""
     parts = () if asked.state is None else AnalysedState.of(armature).since(asked.state)
+    if now is not None and not parts:
+        parts = posed_otherwise(MotionSketch.of(asked.recording), now)
     return ChangedMeanwhile(armature.name, while_solving=True, changed=parts)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hangtime.solver.analysis.motion_sketch import MotionSketch
+from hangtime.solver.analysis.motion_sketch import Apart, MotionSketch
 from hangtime.solver.data.recording import Recording
 from hangtime.tests.helpers.doctored import jump
 from hypothesis import given
@@ -44,6 +44,22 @@ def test_bones_frames_and_rest_count() -> None:
         motion.part(slice(1, None)),
     ):
         assert not is_the_jump(other)
+
+
+def test_which_bones_are_elsewhere_is_told_with_a_frame() -> None:
+    motion, heads = jump(), jump().heads.copy()
+    heads[7:9, 4] += MOVED
+    heads[8, 5] += 2.0 * MOVED
+    kept = MotionSketch.from_text(MotionSketch.of(motion).text)
+    assert kept is not None
+    assert kept.apart(MotionSketch.of(replace(motion, heads=heads))) == Apart((4, 5), 8)
+
+
+def test_of_an_earlier_versions_sketch_it_is_not_told() -> None:
+    before = MotionSketch.from_text(MotionSketch.of(jump()).text.rpartition(" ")[0])
+    assert before is not None
+    assert before.is_near(MotionSketch.of(jump()))
+    assert before.apart(MotionSketch.of(jump())) is None
 
 
 @pytest.mark.parametrize("text", ["", "no sketch", "layout AAAA", "layout ?", "\u00e4 \u00e4"])

@@ -156,11 +156,22 @@ def test_what_is_not_as_it_was_analysed_is_named(
         bpy.ops.hangtime.fit()
 
 
+def test_bones_that_are_posed_otherwise_are_named_where_nothing_else_changed(
+    analysed: bpy.types.Object,
+) -> None:
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    analysed.pose.bones["LeftForeArm"].location.y += 0.2  # which has no keys
+    named = r"\(the pose of LeftForeArm, .*, most at frame \d+\); press Analyze again"
+    with pytest.raises(RuntimeError, match=named):
+        bpy.ops.hangtime.fit()
+
+
 def test_what_changed_since_an_earlier_version_analysed_is_one_of_many(
     analysed: bpy.types.Object,
 ) -> None:
     """Which kept nothing of it."""
-    analysed.hangtime.property_unset("analysed_state")
+    for kept in ("analysed_state", "analysed_motion"):
+        analysed.hangtime.property_unset(kept)
     moved(analysed)
     with pytest.raises(RuntimeError, match=r"its bones, place, .* or unit scale changed since"):
         bpy.ops.hangtime.fit()
