@@ -122,7 +122,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         keep(action, answer.traces, stood)
         told = [*take_lines(made), *layers_lines(armature, action)]
         note(armature, armature, action, answer, told)
-        warn_of_controls(armature, action, made.controls)
+        warn_of_controls(action, made.controls)
         if loop.travels:
             complete(tell_missed(armature, armature, action, answer))
         mark_contacts(armature, action, answer, options)
@@ -151,7 +151,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         told = [*told, *layers_lines(armature, action, in_slot=in_slot)]
     note(armature, armature, action, answer, told)
     if written is not None:
-        warn_of_controls(armature, action, written.controls)
+        warn_of_controls(action, written.controls)
         warn(armature, action, [*blend_lines(written.blends), *slide_lines(written.slide)])
     times = answer.report.times
     time = written.time if written is not None else TakeTime.of(times, 1.0)

@@ -280,12 +280,15 @@ def given_up_lines(report: Report) -> list[str]:
 
 def missed_body_lines(missed: Sequence[BodyMiss]) -> list[str]:
     """The bones that controls leave elsewhere than solved, if there are any: a line."""
-    bones = ", ".join(
-        f"{each.bone} is up to {each.mm:.0f} mm (frame {each.far_frame:g}) and "
-        f"{each.degrees:.0f}° (frame {each.turned_frame:g}) off"
-        for each in missed
-    )
+    bones = ", ".join(f"{each.bone} is up to {_off(each)} off" for each in missed)
     return [f"The rig's controls do not reach what was solved: {bones}"] if bones else []
+
+
+def _off(miss: BodyMiss) -> str:
+    """What a bone misses, but for what is nothing in whole millimetres or degrees."""
+    far = [f"{miss.mm:.0f} mm (frame {miss.far_frame:g})"] * bool(round(miss.mm))
+    turned = [f"{miss.degrees:.0f}° (frame {miss.turned_frame:g})"] * bool(round(miss.degrees))
+    return " and ".join(far + turned)
 
 
 def blend_lines(blends: Sequence[BlendReport]) -> list[str]:

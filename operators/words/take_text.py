@@ -6,7 +6,7 @@ from math import degrees, hypot
 
 from ...bridge.companions.found import Companions
 from ...bridge.controls.missed.aimed import Aimed
-from ...bridge.controls.missed.kept import KeptByControls
+from ...bridge.controls.missed.kept import FAR_MM, TURNED_DEG, KeptByControls
 from ...bridge.loops.write_loop import WrittenLoop
 from ...bridge.polish.pins import MovedPin
 from ...bridge.polish.put_on import PlacedPolish
@@ -176,12 +176,16 @@ def _controls(kept: KeptByControls) -> Iterator[str]:
             f"({kept.turned_bone}, frame {kept.turned_frame:g})"
         )
         return
-    yield f"{kept.controls} controls have keys, and miss the solution by more than 1 mm or 0.2°:"
+    yield (
+        f"{kept.controls} controls have keys, and miss the solution by more than {FAR_MM:g} mm or "
+        f"{TURNED_DEG:g}°:"
+    )
     for miss in kept.worst:
-        yield (
-            f"  {miss.bone} by {miss.mm:.1f} mm (frame {miss.far_frame:g}), {miss.degrees:.1f}° "
-            f"(frame {miss.turned_frame:g})"
-        )
+        far = [f"{miss.mm:.1f} mm (frame {miss.far_frame:g})"] * (miss.mm > FAR_MM)
+        turned = [f"{miss.degrees:.1f}° (frame {miss.turned_frame:g})"]
+        told = far + turned * (miss.degrees > TURNED_DEG)
+        if told:
+            yield f"  {miss.bone} by {', '.join(told)}"
 
 
 def _frames(count: int) -> str:

@@ -135,12 +135,13 @@ def tell_polish(
     warn(armature, action, pin_lines(moved), polish_lines(renewal.put))
 
 
-def warn_of_controls(
-    armature: bpy.types.Object, action: bpy.types.Action, kept: KeptByControls | None
-) -> None:
-    """Warn of bones that controls, if there are any, leave far from the solution."""
+def warn_of_controls(action: bpy.types.Action, kept: KeptByControls | None) -> None:
+    """Warn, before a result is accepted, of bones that controls, if there are any, leave far from
+    the solution; status and report tell what controls miss, with the take."""
     if kept is not None:
-        warn(armature, action, missed_body_lines(kept.lost))
+        made = action_settings(action)
+        lines = (made.warning, *missed_body_lines(kept.lost))
+        made.warning = "\n".join([line for line in lines if line])
 
 
 def warn(

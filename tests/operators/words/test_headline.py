@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from hangtime.operators.words.headline import MOST_GIVEN_UP, headline
+from hangtime.operators.words.headline import MOST_GIVEN_UP, headline, missed_body_lines
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.reports.certificate import CertificateItem
 from hangtime.solver.data.reports.constraints import ConstraintReport
@@ -176,3 +176,8 @@ def test_bones_that_controls_do_not_bring_where_they_should_be_are_told() -> Non
     missed = BodyMiss("DEF-hand.L", 405.7, 298.0, 111.4, 297.0)
     (told,) = set(headline(replace(made, missed_bodies=(missed,)))) - set(headline(made))
     assert told.endswith("DEF-hand.L is up to 406 mm (frame 298) and 111° (frame 297) off")
+
+
+def test_a_turn_that_is_none_in_whole_degrees_is_not_told() -> None:
+    (told,) = missed_body_lines([BodyMiss("DEF-hand.L", 12.9, 31.0, 0.04, 32.0)])
+    assert told.endswith(": DEF-hand.L is up to 13 mm (frame 31) off")

@@ -6,9 +6,11 @@ from math import pi
 import numpy as np
 import pytest
 from hangtime.bridge.controls.missed.aimed import Aimed
+from hangtime.bridge.controls.missed.kept import KeptByControls
 from hangtime.bridge.takes.span import ResultSpan, WrittenTake
 from hangtime.bridge.takes.take_time import TakeTime
 from hangtime.operators.words.take_text import aimed_line, apart_lines, take_lines, take_record
+from hangtime.solver.data.reports.keys import BodyMiss
 from hangtime.solver.data.requests import ALWAYS, PoseRequest
 from hangtime.solver.data.stance_move import StanceMove
 
@@ -37,6 +39,17 @@ def test_a_take_that_ends_within_the_blend_tells_what_it_keeps() -> None:
         "adapted ones are off the take",
     ]
     assert take_record(written)["kept_at_end"] == pytest.approx(0.942, abs=1e-3)
+
+
+def test_of_what_controls_miss_only_what_is_beyond_the_promise_is_told() -> None:
+    hand = BodyMiss("hand", 12.9, 31.0, 0.04, 32.0)
+    arm, spine = BodyMiss("arm", 0.3, 2.0, 8.5, 31.0), BodyMiss("spine", 0.2, 2.0, 0.1, 2.0)
+    kept = KeptByControls(12.9, "hand", 31.0, 8.5, "arm", 31.0, 22, (hand, arm, spine))
+    assert take_lines(WrittenTake(SPAN, None, None, SAME, controls=kept))[2:] == [
+        "22 controls have keys, and miss the solution by more than 1 mm or 0.2°:",
+        "  hand by 12.9 mm (frame 31)",
+        "  arm by 8.5° (frame 31)",
+    ]
 
 
 def test_how_far_feet_slide_on_the_way_back_is_on_record() -> None:
