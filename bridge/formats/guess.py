@@ -24,13 +24,17 @@ _INDEX: dict[UpAxis, int] = {"Y": 1, "Z": 2}
 def guess_up(clip: MotionClip) -> UpAxis:
     """Up axis: along which the head is above the feet in the motion; without their names, the tall
     one. Where an upright rest pose says another, the figure lies or stands on its hands, or its
-    root's rotation turns all upright: the floor tells which."""
-    points = _sampled_points(clip)
+    root's rotation turns all upright: the floor tells which. Who is upside down in between stands
+    upright at the ends of the clip."""
+    points = _sampled_points(clip, _sampled(clip))
     stature = _stature(clip, points)
     moving: UpAxis = "Z" if stature[2] > stature[1] else "Y"
     rest = _rest_up(clip)
-    if rest is None or rest == moving:
+    if rest == moving:
         return moving
+    ends = _up_at_ends(clip, points)
+    if rest is None or rest == ends:
+        return ends or moving
     upside_down = -stature[_INDEX[rest]] > abs(stature[_INDEX[moving]])
     return rest if upside_down or _lies(clip, points, rest, moving) else moving
 
@@ -52,10 +56,29 @@ def _rest_up(clip: MotionClip) -> UpAxis | None:
     """The axis along which the rest pose stands; None where it does not clearly, as where all bones
     follow one axis, or where names do not tell head and feet."""
     heads = rest_heads(clip)
-    points = np.concatenate([heads, heads + rest_axes(clip)])
+    return _standing(clip, np.concatenate([heads, heads + rest_axes(clip)])[None])
+
+
+def _up_at_ends(clip: MotionClip, points: FloatArray) -> UpAxis | None:
+    """The axis along which the figure mostly stands when it stands upright in its first and its
+    last second, if it is tall along that in all points (S, 2J, 3), upright or upside down; else
+    None."""
+    second = max(round(1.0 / clip.frame_time), 1)
+    parts = (slice(None, second), slice(-second, None))
+    ends = np.concatenate([_sampled_points(clip, _sampled(clip, part)) for part in parts])
+    upright = [axis for each in ends if (axis := _standing(clip, each[None]))]
+    if not upright:
+        return None
+    tall = np.abs(_statures(clip, points)).mean(axis=0)
+    along: UpAxis = "Z" if tall[2] > tall[1] else "Y"
+    return along if 2 * upright.count(along) > len(upright) else None
+
+
+def _standing(clip: MotionClip, points: FloatArray) -> UpAxis | None:
+    """The axis along which a figure with points (S, 2J, 3) clearly stands upright; else None."""
     if not all(_ends(clip)):
         return None
-    stature = _stature(clip, points[None])
+    stature = _stature(clip, points)
     tall = max(UPRIGHT * float(np.linalg.norm(stature)), TALL * _longest_path(clip))
     return next((axis for axis in get_args(UpAxis) if stature[_INDEX[axis]] > tall), None)
 
@@ -72,10 +95,15 @@ def _lies(clip: MotionClip, points: FloatArray, rest: UpAxis, moving: UpAxis) ->
 
 def _stature(clip: MotionClip, points: FloatArray) -> FloatArray:
     """(3,) from feet to head of points (S, 2J, 3); without their names, how far all extend."""
-    head, feet = _ends(clip)
-    if not (head and feet):
+    if not all(_ends(clip)):
         return np.asarray(np.median(np.ptp(points, axis=1), axis=0))
-    return np.asarray(points[:, head].mean(axis=(0, 1)) - points[:, feet].mean(axis=(0, 1)))
+    return np.asarray(_statures(clip, points).mean(axis=0))
+
+
+def _statures(clip: MotionClip, points: FloatArray) -> FloatArray:
+    """(S, 3) from feet to head, whose names are known, of points (S, 2J, 3)."""
+    head, feet = _ends(clip)
+    return np.asarray(points[:, head].mean(axis=1) - points[:, feet].mean(axis=1))
 
 
 def _ends(clip: MotionClip) -> tuple[list[int], list[int]]:
@@ -116,14 +144,15 @@ def _bone_lengths(clip: MotionClip) -> FloatArray:
     return np.asarray(lengths)
 
 
-def _sampled_points(clip: MotionClip) -> FloatArray:
-    """(S, 2J, 3) heads, then tails, at instants spread over the clip."""
-    heads, rotations = forward_kinematics(clip, _sampled(clip))
+def _sampled_points(clip: MotionClip, frames: IntArray) -> FloatArray:
+    """(S, 2J, 3) heads, then tails, at so many frames."""
+    heads, rotations = forward_kinematics(clip, frames)
     tails = heads + np.einsum("tjab,jb->tja", rotations, rest_axes(clip))
     return np.concatenate([heads, tails], axis=1)
 
 
-def _sampled(clip: MotionClip) -> IntArray:
-    """Frames spread over the clip."""
-    total = len(clip.positions)
-    return np.asarray(np.unique(np.linspace(0, total - 1, min(SAMPLES, total)).astype(int)))
+def _sampled(clip: MotionClip, part: slice = slice(None)) -> IntArray:
+    """Frames spread over the clip, or over a part of it."""
+    frames = np.arange(len(clip.positions))[part]
+    spread = np.linspace(0, len(frames) - 1, min(SAMPLES, len(frames)))
+    return np.asarray(frames[np.unique(spread.astype(int))])

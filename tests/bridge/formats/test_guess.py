@@ -93,6 +93,25 @@ def test_who_lies_or_stands_on_the_hands_all_through_is_upright_at_rest(
 
 @pytest.mark.parametrize(("name", "up"), UPRIGHT_AT_REST)
 @pytest.mark.parametrize("heading", [0, 90, 180, 270])
+@pytest.mark.parametrize("height", [0.0, 0.3, 1.0])
+def test_who_is_upside_down_for_long_stands_upright_at_the_ends(
+    name: str, up: str, heading: int, height: float
+) -> None:
+    """As in a freeze, on the floor or on something of so many m: head and feet change places, and
+    only leaning is left in the mean."""
+    clip = load_clip(name)
+    share = np.linspace(0.0, 1.0, len(clip.positions))
+    over = np.radians(160.0) * np.interp(share, [0.2, 0.3, 0.7, 0.8], [0.0, 1.0, 1.0, 0.0])
+    way = axis_rotation(UP[up], np.full(len(share), np.radians(heading))) @ axis_rotation(0, over)
+    rotations = clip.rotations.copy()
+    rotations[:, 0] = way @ rotations[:, 0]
+    frozen = on_the_floor(replace(clip, rotations=rotations), up)
+    frozen.positions[:, 0, UP[up]] += height / guess_unit(clip)
+    assert guess_up(frozen) == up
+
+
+@pytest.mark.parametrize(("name", "up"), UPRIGHT_AT_REST)
+@pytest.mark.parametrize("heading", [0, 90, 180, 270])
 def test_a_root_that_turns_all_to_the_other_axis_outweighs_the_rest_pose(
     name: str, up: str, heading: int
 ) -> None:
