@@ -20,6 +20,10 @@ FLAT_SPEED_UP = 0.45  # m/s, up or down; who falls is as slow for 0.09 s, which 
 STANDING_SPEED_UP = 0.15  # m/s, up or down, of a foot that stands, flat or not
 LOW = 0.03  # m above the floor: a foot that stands
 LEAST_STANCE = 0.1  # s
+BELOW = 0.1  # m below a foot that stands, where a hand, or a knee that kneels, may be
+HEEL_DOWN = (
+    0.5  # of its length, by which a ball may be above the ankle; of who lies on the back more
+)
 ROUNDS = 8  # of narrowing the speeds to the half that agree best
 
 
@@ -53,6 +57,7 @@ def flat_feet(recording: Recording, figure: Figure) -> Iterator[FlatFoot]:
         flat = np.linalg.norm(ankle - ball, axis=1) < FLAT
         flat &= np.linalg.norm(velocity[:, :2], axis=1) < FLAT_SPEED
         flat &= np.abs(velocity[:, 2]) < FLAT_SPEED_UP
+        flat &= may_stand(recording, figure, side)
         yield FlatFoot(0.5 * (ends[0] + ends[1]), velocity, flat)
 
 
@@ -85,6 +90,22 @@ def foot_ends(recording: Recording, figure: Figure, side: Side) -> tuple[FloatAr
         return ankle, recording.heads[:, toe]
     bone = recording.bones[foot]
     return ankle, ankle + recording.rotations[:, foot] @ (bone.rotation.T @ (bone.tail - bone.head))
+
+
+def may_stand(recording: Recording, figure: Figure, side: Side) -> BoolArray:
+    """(T,) whether a foot's sole faces down and, the other leg aside, which may be on a lower step,
+    nothing of the body is below it: of who stands on the hands, or lies, feet that are held still
+    in the air stand on nothing. By the body alone, for what floats tells no height of a floor."""
+    ankle, ball = foot_ends(recording, figure, side)
+    foot = np.minimum(ankle[:, 2], ball[:, 2])
+    legs = {(part, each) for part in (Part.SHANK, Part.FOOT, Part.TOE) for each in SIDES}
+    aside = {figure.sided.get(key) for key in legs - {(Part.SHANK, side)}}
+    others = [bone for bone in figure.bones if bone not in aside]
+    stands = recording.heads[:, others, 2].min(axis=1) > foot - BELOW
+    if (Part.TOE, side) in figure.sided:  # else the foot's end may be anywhere
+        raised = ball[:, 2] - ankle[:, 2]
+        stands &= raised < HEEL_DOWN * np.linalg.norm(ball - ankle, axis=1)
+    return np.asarray(stands)
 
 
 def agreed(speeds: FloatArray) -> tuple[FloatArray, float]:

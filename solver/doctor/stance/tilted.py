@@ -19,7 +19,7 @@ from ..figure import Figure
 from ..finding import Finding, FindingKind
 from ..plumb import Plumb, find_plumb
 from ..repairs import STEEPEST, Repairs
-from .flat_feet import STANDING_SPEED_UP, foot_ends
+from .flat_feet import STANDING_SPEED_UP, foot_ends, may_stand
 
 # Of clean clips up to 0.6°. Steps and boxes slope by 8° and more, but there nobody leans.
 LEAST, MOST = 0.7, 4.0  # °
@@ -167,12 +167,13 @@ def _stances(recording: Recording, figure: Figure, beneath: Heights) -> Iterator
         return
     balls = [foot_ends(recording, figure, side)[1] for side in SIDES]
     lowest = np.min([ball[:, 2] for ball in balls], axis=0)
-    for ball, side in zip(balls, (1.0, -1.0), strict=True):
+    for ball, foot, side in zip(balls, SIDES, (1.0, -1.0), strict=True):
         inner = (ball[2 * reach :] - ball[: -2 * reach]) * (recording.rate / (2 * reach))
         velocity = np.pad(inner, ((reach, reach), (0, 0)), mode="edge")
         stands = np.linalg.norm(velocity[:, :2], axis=1) < SLOW
         stands &= np.abs(velocity[:, 2]) < STANDING_SPEED_UP
         stands &= ball[:, 2] < lowest + LIFTED
+        stands &= may_stand(recording, figure, foot)
         for first, last in runs(stands):
             if last - first >= max(LEAST_STANCE * recording.rate, 1.0):
                 part = slice(first, last + 1)

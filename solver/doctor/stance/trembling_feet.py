@@ -14,7 +14,7 @@ from ...data.recording import Recording
 from ...numerics.runs import runs
 from ...skeleton.parts import SIDES
 from ..figure import Figure
-from .flat_feet import FLAT, FLAT_SPEED, STANDING_SPEED_UP, agreed, foot_ends
+from .flat_feet import FLAT, FLAT_SPEED, STANDING_SPEED_UP, agreed, foot_ends, may_stand
 
 WINDOW = 0.2  # s, of the lines that tell which feet stand; a stance's own is as long as itself
 # Noise of 3 mm and 1°, as one camera has it, leaves this much of these lines' speeds.
@@ -114,7 +114,10 @@ def _stances(recording: Recording, figure: Figure) -> _Stances | None:
         (np.linalg.norm(ankle - ball, axis=1) < FLAT + TREMOR)
         & (np.abs(speed[:, 2]) < STANDING_SPEED_UP)
         & (middle[:, 2] < lowest + LIFTED)
-        for ankle, ball, speed, middle in zip(ankles, balls, speeds, middles, strict=True)
+        & may_stand(recording, figure, side)
+        for ankle, ball, speed, middle, side in zip(
+            ankles, balls, speeds, middles, SIDES, strict=True
+        )
     ]
     slow = np.concatenate([speed[on, :2] for speed, on in zip(speeds, level, strict=True)])
     if not len(slow):

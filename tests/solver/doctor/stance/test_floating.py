@@ -17,6 +17,7 @@ from hangtime.solver.doctor.finding import FindingKind
 from hangtime.solver.doctor.repairs import Repairs
 from hangtime.solver.doctor.stance.flat_feet import flat_feet
 from hangtime.solver.doctor.stance.floating import find_floating, held_to_the_ground
+from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.solver.numerics.runs import runs
 from hangtime.tests.helpers.clips import JUMP, load_recording
 from hangtime.tests.helpers.doctored import figure, jump
@@ -109,6 +110,18 @@ def test_one_foot_that_is_lifted_flat_is_no_floating() -> None:
     assert left[0] in figure().of(Part.FOOT)
     heads[:, left, 2] += lifted[:, None]
     assert find_floating(replace(jump(), heads=heads), figure()) is None
+
+
+def test_feet_that_are_held_still_in_the_air_do_not_float() -> None:
+    """As in a freeze on the hands, or of who lies on the back with the feet up."""
+    swayed = swaying(0.1, 2.0).of(jump()).recording
+    assert find_floating(swayed, figure()) is not None
+    for degrees in (-90.0, 180.0):
+        turn = axis_rotation(0, np.array([np.radians(degrees)]))[0]
+        heads, rotations = swayed.heads @ turn.T, turn @ swayed.rotations
+        turned = replace(swayed, heads=heads, rotations=rotations)
+        assert find_floating(turned, figure()) is None
+        assert held_to_the_ground(turned, figure()) is turned
 
 
 def test_the_problem_that_asks_for_it_is_held_and_tells_how_far_it_floated() -> None:
