@@ -16,6 +16,7 @@ from ..numerics.runs import runs
 from ..scene.belt import belt_speed
 from ..scene.fall_rate import fitting_rate, is_pulled_down
 from ..scene.support import boxes_beneath
+from ..unseen.held import is_held
 from .balance import (
     SURELY_LASTS,
     lasting,
@@ -157,7 +158,18 @@ def _fitting_rate(performance: Performance, gap: Interval, floor_m: float) -> fl
         return None
     inside = _inside(performance, gap)
     heights = performance.com[inside, 2]
-    return fitting_rate(performance.times[inside], heights, performance.recording.rate)
+    rate = fitting_rate(performance.times[inside], heights, performance.recording.rate)
+    return None if rate is None or is_held_in(performance, inside) else rate
+
+
+def is_held_in(performance: Performance, within: BoolArray | slice) -> bool:
+    """Whether in some frames of a recording, one after the other, something holds the body by the
+    places of its joints and tips."""
+    tips = np.stack([body.tip for body in performance.character.bodies])
+    centres = performance.centres[within]
+    ends = centres + np.einsum("tbij,bj->tbi", performance.rotations[within], tips)
+    parts = np.concatenate([centres, ends], axis=1)
+    return is_held(parts, performance.com[within], performance.character.height)
 
 
 def _leans(performance: Performance, gap: Interval, floor_m: float) -> bool:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..analysis.carried_by import is_held_in
 from ..analysis.performance import Performance, contact_points, leans
 from ..arrays import BoolArray, FloatArray
 from ..data.constants import STANDARD_GRAVITY
@@ -57,18 +58,25 @@ Spans = tuple[tuple[float, float], ...]
 @dataclass(frozen=True)
 class Trusted:
     """Which falls tell a clock. fewest: frames of one. but: where frames are held or missing, or
-    something unseen carries the body: those that touch them may be cut, and are not the clock's."""
+    something unseen carries the body: those that touch them may be cut, and are not the clock's.
+    carried: where contacts that are stated do, none is a fall."""
 
     fewest: int = FEWEST
     but: Spans = ()
+    carried: Spans = ()
 
     def holds(self, count: int, span: tuple[float, float]) -> bool:
         """Whether one of so many frames, from the first to the last of a span, does."""
-        before, after = span[0] - 1.0, span[1] + 1.0
-        return count >= self.fewest and not any(a <= after and before <= b for a, b in self.but)
+        near = span[0] - 1.0, span[1] + 1.0
+        return count >= self.fewest and not (meets(near, self.but) or meets(span, self.carried))
 
 
 ALL = Trusted()
+
+
+def meets(span: tuple[float, float], others: Spans) -> bool:
+    """Whether a span shares a frame with one of others."""
+    return any(a <= span[1] and span[0] <= b for a, b in others)
 
 
 def falls_of(performance: Performance, trusted: Trusted = ALL) -> Falls | None:
@@ -80,7 +88,7 @@ def falls_of(performance: Performance, trusted: Trusted = ALL) -> Falls | None:
 
 def each_fall(performance: Performance, trusted: Trusted = ALL) -> tuple[FloatArray, Spans]:
     """(N, 2) accelerations, m/s², and durations, s, of those that are trusted and are
-    parabolas, and their scene frames."""
+    parabolas, in which nothing holds the body, and their scene frames."""
     up, height = in_the_air(performance), performance.character.height
     times, com, frames = performance.times, performance.com[:, 2], performance.recording.frames
     found, spans = [], []
@@ -98,7 +106,8 @@ def each_fall(performance: Performance, trusted: Trusted = ALL) -> tuple[FloatAr
         smooth = missed < min(ROUGH_BY * height, ROUGH * float(np.ptp(path)) + 5e-4)
         seconds = float(clock[-1])
         arc = fall * seconds**2 / 8.0  # the same at every clock
-        if -acceleration[2] > DOWNWARDS * fall and arc > ROUGH_BY * height and smooth:
+        falls = -acceleration[2] > DOWNWARDS * fall and arc > ROUGH_BY * height and smooth
+        if falls and not is_held_in(performance, slice(first, last + 1)):
             found.append((fall, seconds))
             spans.append(span)
     return np.array(found).reshape(-1, 2), tuple(spans)

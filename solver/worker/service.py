@@ -18,6 +18,7 @@ from ..doctor.examination.diagnose import diagnose
 from ..doctor.examination.ground import as_stood
 from ..doctor.examination.repair import as_asked, unplaced, unplaced_skin
 from ..doctor.examination.scales import odd_size
+from ..doctor.examination.suspects import stated_contacts
 from ..doctor.repairs import Repairs
 from ..doctor.stance.feet import find_feet
 from ..fitting.fit import Fit
@@ -247,7 +248,10 @@ def _examined(request: Request, told: Callable[[float], None]) -> Examined:
     with computable():
         as_made = unplaced(request.recording, placed)
         skin = unplaced_skin(problem.skin, placed)
-        diagnosis = diagnose(as_made, problem.bones, problem.mass, skin, problem.scene, told)
+        diagnosis = diagnose(
+            *(as_made, problem.bones, problem.mass, skin, problem.scene, told),
+            carried=stated_contacts(problem),
+        )
         now = as_asked(request.recording, problem)
         performance = perform(now, build_character(now, chosen=problem.bones), problem.skin)
         feet = find_feet(as_stood(performance, problem.scene))

@@ -44,7 +44,7 @@ from ..upright import find_up
 from .drifts import find_drifts
 from .ground import as_stood, beneath
 from .repair import GROUNDING, placed_skin, repaired, taken_out
-from .scales import find_scales
+from .scales import find_scales, without_unseen
 from .settled import Stance, joined_remedies, remedy_of, settled
 from .without_height import find_what_is_left
 
@@ -99,11 +99,13 @@ def diagnose(
     skin: Skin | None = None,
     scene: Sequence[SceneObject] = (),
     told: Callable[[float], None] = lambda _: None,
+    carried: Spans = (),
 ) -> Diagnosis:
     """chosen: bones by parts of the body, as in a problem. mass: kg, as stated by the artist. skin:
     of the figure, with whose soles it stands. scene: objects of which ground explains where it
     stands, and what it rides on. told: hears now and then the share, 0 to 1, of the time of a long
-    take that is over; of what is done again it hears once more.
+    take that is over; of what is done again it hears once more. carried: scene frames in which
+    contacts touch that are stated, whatever is found.
 
     Raises ClipTooShort, FramesFarApart, MissingPart, NotComputable, ZeroLengthBone.
     """
@@ -173,9 +175,9 @@ def diagnose(
     def touched(repairs: Repairs) -> ContactSchedule:
         performance = performed(repairs)
         told(0.65)
-        return find_contacts(performance, scene)
+        return without_unseen(performance, find_contacts(performance, scene), carried)
 
-    trusted, seconds = _trusted(found, rate), float(recording.times[-1])
+    trusted, seconds = _trusted(found, rate, carried), float(recording.times[-1])
 
     def stood(repairs: Repairs) -> Performance:
         return as_stood(performed(repairs), scene)
@@ -267,11 +269,13 @@ def _parted(found: list[Finding], frames: FloatArray, kept: Span) -> list[Findin
     return [replace(f, remedy=cut) if f.kind in PARTING else f for f in found]
 
 
-def _trusted(found: list[Finding], rate: float) -> Trusted:
-    """The falls that tell the clock; of what was smoothed those that are longer than its window."""
+def _trusted(found: list[Finding], rate: float, carried: Spans) -> Trusted:
+    """The falls that tell the clock; of what was smoothed those that are longer than its window.
+    carried: frames in which contacts that are stated touch."""
     noisy = any(finding.kind is FindingKind.NOISE for finding in found)
     fewest = 2 * reach(rate) + 1 if noisy else FEWEST
-    return Trusted(fewest, _places(found, FindingKind.HELD_FRAMES, *KINDS.values(), *GAPS))
+    torn = _places(found, FindingKind.HELD_FRAMES, *KINDS.values(), *GAPS)
+    return Trusted(fewest, torn, carried)
 
 
 def _places(found: list[Finding], *kinds: FindingKind) -> Spans:

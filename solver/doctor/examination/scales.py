@@ -12,7 +12,7 @@ from ...body.character import build_character
 from ...data.constants import STANDARD_GRAVITY
 from ...data.contacts import ContactSchedule
 from ...data.recording import Recording
-from ..falls import ALL, Trusted, find_scale, refined
+from ..falls import ALL, Spans, Trusted, find_scale, meets, refined
 from ..finding import Finding, FindingKind
 from ..repairs import Repairs
 from ..stance.footing import spans_of
@@ -61,6 +61,16 @@ def odd_size(recording: Recording, height: float, chosen: Mapping[str, str]) -> 
     scales = find_scales(performed, lambda repairs: find_contacts(performed(repairs)), ALL)
     sizes = (each.remedy.scale for each in scales if each.remedy)
     return next((size for size in sizes if size != 1.0), None)
+
+
+def without_unseen(
+    performance: Performance, schedule: ContactSchedule, carried: Spans
+) -> ContactSchedule:
+    """A schedule in which nothing unseen carries where contacts do that are stated. carried: scene
+    frames of these."""
+    spans = spans_of(performance, schedule.unseen)
+    every = zip(schedule.unseen, spans, strict=True)
+    return replace(schedule, unseen=tuple(u for u, span in every if not meets(span, carried)))
 
 
 def _slow_fall(performance: Performance, schedule: ContactSchedule) -> Finding | None:

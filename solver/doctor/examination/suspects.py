@@ -8,6 +8,7 @@ import logging
 from ...data.faults import Damage, Fault
 from ...data.problem import MotionProblem
 from ...data.recording import Recording
+from ..falls import Spans
 from ..finding import Finding, FindingKind
 from ..repairs import Repairs
 from .diagnose import diagnose
@@ -25,8 +26,19 @@ def faults_of(recording: Recording, problem: MotionProblem) -> list[Finding]:
     explained = set(ABOUT_GROUND) if problem.scene or problem.loop else set[FindingKind]()
     if problem.height is not None:
         explained.add(FindingKind.SIZE)
-    found = diagnose(recording, problem.bones, None).findings
+    found = diagnose(recording, problem.bones, carried=stated_contacts(problem)).findings
     return [each for each in found if not each.kind.note and each.kind not in explained]
+
+
+def stated_contacts(problem: MotionProblem) -> Spans:
+    """Scene frames of the contacts that the artist added, or edited at both ends."""
+    added = ((each.start_frame, each.end_frame) for each in problem.added)
+    edited = (
+        (each.start_frame, each.end_frame)
+        for each in problem.contacts
+        if each.start_frame is not None and each.end_frame is not None and not each.remove
+    )
+    return (*added, *edited)
 
 
 def damages_of(recording: Recording, problem: MotionProblem) -> tuple[Damage, ...]:

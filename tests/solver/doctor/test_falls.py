@@ -10,12 +10,15 @@ from hangtime.solver.analysis.carried_by import agreed_rate
 from hangtime.solver.analysis.performance import find_contacts, perform
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import build_character
+from hangtime.solver.data.problem import AddedContact, MotionProblem
 from hangtime.solver.doctor.examination.diagnose import diagnose
-from hangtime.solver.doctor.falls import find_scale
+from hangtime.solver.doctor.examination.suspects import faults_of
+from hangtime.solver.doctor.falls import find_scale, in_the_air
 from hangtime.solver.doctor.finding import FindingKind
 from hangtime.solver.doctor.local_poses import LocalPoses
 from hangtime.solver.doctor.repairs import Repairs
 from hangtime.solver.numerics.rotations import rotation_matrix
+from hangtime.solver.unseen.held import is_held
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.doctored import character, jump
 
@@ -53,6 +56,40 @@ def test_a_body_that_leans_on_a_hand_does_not_fall() -> None:
     carried.centres[:, hand, 2] = schedule.floor_m + 0.04
     assert agreed_rate(carried, schedule) is None
     assert find_scale(carried) is None
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0, 4.0])
+def test_a_body_that_a_hand_holds_does_not_fall(factor: float) -> None:
+    """As on a bar or a ledge, high above the floor, where the hand keeps its place."""
+    slow = slowed(factor).of(jump()).recording
+    assert find_scale(perform(slow, character())) is not None
+    held = perform(slow, character())
+    hand = character().body(Part.HAND, Side.LEFT)
+    held.centres[:, hand] = [0.0, 0.0, 2.3]
+    assert find_scale(held) is None
+    assert agreed_rate(held, find_contacts(held)) is None
+
+
+def test_who_stands_still_at_an_end_of_it_did_not_fall() -> None:
+    """As on a roof after a climb; in mid-air, at an end of a fall, a body is the fastest."""
+    flight = perform(jump(), character())
+    aloft = in_the_air(flight)
+    parts, com, height = flight.centres[aloft], flight.com[aloft], character().height
+    assert not is_held(parts, com, height)
+    still = np.minimum(np.arange(len(com) + 10), len(com) - 1)
+    assert is_held(parts[still], com[still], height)
+    assert is_held(parts[still[::-1]], com[still[::-1]], height)
+
+
+def test_falls_in_which_a_stated_contact_touches_tell_no_clock() -> None:
+    slow = slowed(2.0).of(jump()).recording
+    (told,) = faults_of(slow, MotionProblem())
+    assert told.kind is FindingKind.TIME_SCALE
+    (first, last) = told.frames[0]
+    vaults = AddedContact("Left hand", first + 10.0, last - 10.0)
+    assert faults_of(slow, MotionProblem(added=(vaults,))) == []
+    before = AddedContact("Left toe", first - 30.0, first - 1.0)
+    assert faults_of(slow, MotionProblem(added=(before,))) == [told]
 
 
 @pytest.mark.parametrize("factor", [1.6, 0.01, 2.54])
