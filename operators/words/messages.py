@@ -104,6 +104,8 @@ def _variant(fault: Fault) -> int:
             return 2 if fault.hands else bool(fault.resting)
         case faults.UnseenSupports():
             return fault.leaning
+        case faults.StandsIn():
+            return fault.beside
         case faults.NoFaceThere():
             return fault.reach is not None
         case faults.UnknownObject():

@@ -15,6 +15,7 @@ from ..data.problem import MotionProblem, Pin
 from ..data.scene import SceneObject
 from ..fitting.fit import Fit
 from ..scene.boxes import still_near
+from ..scene.steep import is_steep
 from ..scene.triangle_mesh import SHEET, placed_mesh
 from ..transcription.contact_pins import PointContact
 from ..transcription.motion import Motion
@@ -47,6 +48,7 @@ def find_footing(
 
 def check_sunk(scene: Sequence[SceneObject], schedule: ContactSchedule, footing: Footing) -> None:
     """No contact that is not on an object is in one that stands still: nothing could keep it out.
+    What is at a side face is in it no deeper than the way out there.
 
     Raises StandsIn, StandsBelow.
     """
@@ -62,10 +64,15 @@ def check_sunk(scene: Sequence[SceneObject], schedule: ContactSchedule, footing:
         mesh = placed_mesh(thing)
         deep = mesh.heights(places[:, :2]).z - places[:, 2]
         inside = (mesh.distances(places + SUNK * UP).distance < 0.0) & (deep > SUNK)
-        if inside.all():
+        out = mesh.distances(places)
+        beside = (out.distance < 0.0) & is_steep(out.normal)
+        inside &= ~(beside & (out.distance > -SUNK))
+        if (inside & ~beside).all():
             raise StandsBelow(thing.name, float(deep.max()))
         for i in np.flatnonzero(inside)[:1].tolist():
-            raise StandsIn(thing.name, schedule.contacts[loose[i]].name, float(deep[i]))
+            metres = -out.distance[i] if beside[i] else deep[i]
+            name = schedule.contacts[loose[i]].name
+            raise StandsIn(thing.name, name, float(metres), beside=bool(beside[i]))
 
 
 def on_faces(motion: Motion, footing: Footing) -> Motion:

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..body.kinematics import BodyPoint, Pose, point_velocity
+from ..data.constants import DEFAULT_FRICTION, UP
 from ..data.contacts import Contact
 from ..data.row_kinds import RowKind
 from ..numerics.interpolation import interpolate
@@ -23,7 +24,6 @@ from ..numerics.splines import ORDER, SplineBasis
 from .ride import Ride
 from .rows import Layout, Rows, inside
 
-DEFAULT_FRICTION = 1.0  # of a rubber sole on a hall's floor
 SLACK_RATE = 50.0  # 1/s, of a speed that goes with a slack of places
 TINY = 1e-9  # s
 VELOCITY_STEP = 1e-3  # s, of the central differences that give a moving place its velocity
@@ -85,7 +85,7 @@ class PointContact:
     ride: Ride | None = None
     sole: PlaceTrajectory | None = None
     friction: float | None = DEFAULT_FRICTION
-    normal: FloatArray = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
+    normal: FloatArray = field(default_factory=UP.copy)
     pyramid: bool = False
 
     @property

@@ -19,8 +19,12 @@ SCENES: dict[type[Fault], str | tuple[str, ...]] = {
     "of its faces' corners.",
     faults.NoThickness: "“{thing}” is pressed flat, its faces on each other, so that it has no "
     "inside; give it some thickness, or choose a plane in its place.",
-    faults.StandsIn: "“{contact}” stands in “{thing}”, {metres:length} below its surface; let its "
-    "stance stand on it (On, in the panel Contacts), or move one of them.",
+    faults.StandsIn: (
+        "“{contact}” stands in “{thing}”, {metres:length} below its surface; let its stance stand "
+        "on it (On, in the panel Contacts), or move one of them.",
+        "“{contact}” is in “{thing}”, {metres:length} behind the face at its side; move one of "
+        "them so far, so that it touches that face.",
+    ),
     faults.StandsBelow: "The recording stands {metres:length} below the top of “{thing}”, in it; "
     "lower the object so far, or raise the armature.",
     faults.NoRoom: "Nothing fits between “{contact}” and “{thing}”: {free:length} are free above "

@@ -38,10 +38,12 @@ class TooManyFaces(SceneFault):
 
 @dataclass
 class StandsIn(SceneFault):
-    """A contact that no pin put upon an object is in it, by metres."""
+    """A contact that no pin put upon an object is in it, by metres: below its surface, or beside
+    it, behind a steep face, through which the way out is shorter."""
 
     contact: str
     metres: float
+    beside: bool = False
 
 
 @dataclass

@@ -4,6 +4,7 @@ from contextlib import nullcontext
 
 import numpy as np
 import pytest
+from hangtime.operators.words.messages import sentence
 from hangtime.solver.analysis.pins.landing import Footing
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.faults import (
@@ -131,6 +132,21 @@ def test_a_stance_in_a_crate_is_told_by_its_contact() -> None:
     landing = [c.name for c in fitted_hop().schedule.contacts if c.start > 0.6]
     assert caught.value.contact in landing
     assert caught.value.metres == pytest.approx(0.3, abs=0.01)
+
+
+def wall(deep: float, role: SceneRole = SceneRole.GROUND) -> SceneObject:
+    """A wall with the foremost place of the landing that far behind its face, m."""
+    places = np.array([c.place for c in fitted_hop().schedule.contacts if c.start > 0.6])
+    x, y, _ = places[places[:, 1].argmin()].tolist()
+    return thing("Wall", box((3.0, 0.2, 3.0)), (x, y + deep - 0.1, 1.4), role=role)
+
+
+def test_who_is_at_the_face_of_a_wall_is_not_below_its_top() -> None:
+    check_sunk((wall(0.03),), fitted_hop().schedule, recorded_footing())
+    with pytest.raises(StandsIn) as caught:
+        check_sunk((wall(0.06),), fitted_hop().schedule, recorded_footing())
+    assert (caught.value.metres, caught.value.beside) == (pytest.approx(0.06), True)
+    assert "6.0 cm behind the face at its side" in sentence(caught.value)
 
 
 @pytest.mark.parametrize("height", [0.0, 0.02])
