@@ -46,11 +46,20 @@ def _record(row: Row, context: RowContext) -> PointRequest:
         place=scaled(row.place, context.metres) if own_place else None,
         path=path,
         axes=PointAxes[row.axes],
-        normal=direction_of(row, row.normal),
+        normal=direction_of(row, row.normal) if _has_normal(row) else None,
         bounds=_bounds(row, context) if row.use_bounds else None,
         environment=row.environment,
         grip=row.environment and row.grip,
     )
+
+
+def _has_normal(row: Row) -> bool:
+    """Whether the artist says where the surface faces."""
+    return _is_along_surface(row) or bool(row.environment and row.use_normal)
+
+
+def _is_along_surface(row: Row) -> bool:
+    return bool(row.use_bounds and row.axes == PointAxes.SURFACE.name)
 
 
 def _bounds(row: Row, context: RowContext) -> tuple[Bound, Bound, Bound]:
@@ -90,6 +99,10 @@ def _draw(fields: FieldDrawing, row: Row) -> None:
     layout.prop(row, "environment")
     if row.environment:
         layout.prop(row, "grip")
+        if not _is_along_surface(row):  # whose normal is shown above
+            layout.prop(row, "use_normal")
+            if row.use_normal:
+                layout.column(align=True).prop(row, "normal")
 
 
 def _draw_bounds(layout: bpy.types.UILayout, row: Row) -> None:
@@ -175,6 +188,10 @@ KIND = ConstraintKind(
             "Something is there that pushes back with a force, such as a bar or a wall",
         ),
         "grip": boolean("Grip", "It can be held on to, so that it pulls too"),
+        "use_normal": boolean(
+            "Custom Normal",
+            "Say where what pushes back faces; else as the face of World that is there, or up",
+        ),
         "axes": choice("Axes", AxesLabel, "The axes of the bounds"),
         "normal": stored_vector(
             "Normal", "Out of the surface", subtype="DIRECTION", default=(0.0, 0.0, 1.0)

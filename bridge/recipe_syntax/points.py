@@ -45,14 +45,11 @@ def _axes(table: Table, bounds: list[Table]) -> PointAxes:
     if axes is None and named:
         first = same.get(named[0][1], named[0][1])
         axes = next(of for of, names in AXIS_NAMES.items() if first in names)
-    if axes is None:
-        axes = PointAxes.SURFACE if "normal" in table.values else PointAxes.WORLD
+    axes = axes or PointAxes.WORLD
     known = AXIS_NAMES[axes]
     for where, name in named:
         if same.get(name, name) not in known:
             where.refuse(name, f'"{name}" is none of the {axes.value} axes: {listed(known)}')
-    if "normal" in table.values and axes is not PointAxes.SURFACE:
-        table.refuse("normal", f'"normal" is of a surface; the axes are "{axes.value}"')
     return axes
 
 
@@ -72,8 +69,7 @@ def _write_axes(record: Any) -> Values:
         values |= moved
     elif moved:
         values["relative"] = point.relative
-    if point.axes is PointAxes.SURFACE:
-        values["normal"] = point.normal
+    values["normal"] = point.normal
     if point.bounds is not None:
         for i, key in enumerate(BOUND_KEYS):
             ends = zip(names, point.bounds, strict=True)

@@ -93,10 +93,4 @@ def detailed_contact(
         times, places = path_instants(request.path, context.timeline), np.array(request.path.places)
         begin = path_places(request.path, context.timeline)(np.array(span[:1]))
         track = PlaceTrajectory(times, places - begin)
-    return replace(
-        contact,
-        held=held,
-        track=track,
-        friction=None if request.grip else friction,
-        normal=np.array(request.normal, dtype=float),
-    )
+    return replace(contact, held=held, track=track, friction=None if request.grip else friction)

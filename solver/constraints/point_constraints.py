@@ -7,6 +7,7 @@ import numpy as np
 from ..analysis.timeline import Timeline
 from ..arrays import FloatArray
 from ..body.kinematics import BodyPoint
+from ..data.constants import UP
 from ..data.requests import Path, PointAxes, PointRequest
 from ..numerics.rotations import perpendicular, unit
 from ..transcription.constraint import Bounds, Constraint
@@ -46,7 +47,7 @@ def point_axes(
         case PointAxes.TRAVEL:
             return context.travel(0.5 * sum(span))
         case PointAxes.SURFACE:
-            out = unit(np.array(request.normal, dtype=float))
+            out = UP if request.normal is None else unit(np.array(request.normal, dtype=float))
             ahead = context.travel(0.5 * sum(span))[:, 0]
             along = ahead - out * (ahead @ out)
             along = unit(along) if np.linalg.norm(along) > 0.1 else perpendicular(out)

@@ -63,8 +63,9 @@ class PointRequest:
     place: world; None takes the place of the fit (per instant, or its mean where `environment`).
     relative: displaces the place, in `axes`. path: the place moves with an object instead.
     bounds: per axis of `axes`, about the place; None holds the point there exactly.
-    normal: of the surface, for PointAxes.SURFACE. environment: the world pushes back with a force
-    there; such a point may pull as well as push where it is a grip.
+    normal: of the surface, for PointAxes.SURFACE and for what pushes back; None is that of the
+    scene's face there, or else up. environment: the world pushes back with a force there; such a
+    point may pull as well as push where it is a grip.
     """
 
     name: str
@@ -75,7 +76,7 @@ class PointRequest:
     relative: Vector = (0.0, 0.0, 0.0)
     path: Path | None = None
     axes: PointAxes = PointAxes.WORLD
-    normal: Vector = (0.0, 0.0, 1.0)
+    normal: Vector | None = None
     bounds: tuple[Bound, Bound, Bound] | None = None
     environment: bool = False
     grip: bool = False

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..analysis.pins.landing import Footing
 from ..analysis.pins.pinned_places import chosen_contacts, phase_of, pinned_footing
+from ..analysis.pins.pushed_faces import pushed_normals
 from ..arrays import FloatArray
 from ..data.constants import UP
 from ..data.contacts import ContactSchedule
@@ -18,7 +19,6 @@ from ..scene.boxes import still_near
 from ..scene.steep import is_steep
 from ..scene.triangle_mesh import SHEET, placed_mesh
 from ..transcription.contact_pins import PointContact
-from ..transcription.motion import Motion
 
 SUNK = 0.04  # m; as far as a place may be from the floor that it is put upon (grounding.py)
 
@@ -29,7 +29,8 @@ def find_footing(
     schedule: ContactSchedule,
     standing: Mapping[Pin, SceneObject] | None = None,
 ) -> Footing:
-    """Where the problem's pins put the contacts of its schedule.
+    """Where the problem's pins put the contacts of its schedule, and the faces that they are on or
+    push against there.
 
     standing: of pins on objects that move, the object as it is when they land. Raises UnknownPhase,
     UnknownContact, ContradictoryPins, and as `land` does.
@@ -37,12 +38,14 @@ def find_footing(
     found = pinned_footing(problem, fit.performance, fit.schedule, standing)
     row = {contact.name: i for i, contact in enumerate(fit.schedule.contacts)}
     places = np.array([c.place for c in schedule.contacts]).reshape(-1, 3)
-    normals = np.tile(UP, (len(places), 1))
     for i, contact in enumerate(schedule.contacts):
         if contact.name in row:
-            places[i], normals[i] = (
-                each[row[contact.name]] for each in (found.places, found.normals)
-            )
+            places[i] = found.places[row[contact.name]]
+    character = fit.performance.character
+    normals = pushed_normals(problem, schedule.contacts, places, character, schedule.floor_m)
+    for i, contact in enumerate(schedule.contacts):
+        if contact.name in found.pins:
+            normals[i] = found.normals[row[contact.name]]
     return Footing(places, normals, found.pins)
 
 
@@ -75,27 +78,27 @@ def check_sunk(scene: Sequence[SceneObject], schedule: ContactSchedule, footing:
             raise StandsIn(thing.name, name, float(metres), beside=bool(beside[i]))
 
 
-def on_faces(motion: Motion, footing: Footing) -> Motion:
-    """The motion with contacts whose friction goes with the faces that they stand on.
+def on_faces(contacts: Sequence[PointContact], footing: Footing) -> tuple[PointContact, ...]:
+    """Contacts whose friction goes with the faces that they stand on or push against; the very same
+    where these are level.
 
     Raises TooSteep.
     """
-    sloping = footing.normals[:, 2] < 1.0
-    if not sloping.any():
-        return motion
-    t = motion.transcription
-    contacts = tuple(
-        _on_face(contact, normal, footing.pins[contact.contact.name]) if slopes else contact
-        for contact, normal, slopes in zip(t.contacts, footing.normals, sloping, strict=True)
+    faced = zip(contacts, footing.normals, strict=True)
+    return tuple(
+        contact if normal[2] >= 1.0 else _on_face(contact, normal, footing)
+        for contact, normal in faced
     )
-    return replace(motion, transcription=replace(t, contacts=contacts))
 
 
-def _on_face(contact: PointContact, normal: FloatArray, pin: Pin) -> PointContact:
-    steep = float(np.hypot(*normal[:2]) / normal[2])
-    if contact.friction is not None and steep >= contact.friction:
-        angle = float(np.degrees(np.arctan(steep)))
-        raise TooSteep(pin.name, contact.contact.name, pin.on or "", angle, contact.friction)
+def _on_face(contact: PointContact, normal: FloatArray, footing: Footing) -> PointContact:
+    """Who stands needs friction for it, who pushes off from a wall may glide along it."""
+    pin = footing.pins.get(contact.contact.name)
+    if pin is not None and contact.friction is not None:
+        steep = float(np.hypot(*normal[:2]) / normal[2])
+        if steep >= contact.friction:
+            angle = float(np.degrees(np.arctan(steep)))
+            raise TooSteep(pin.name, contact.contact.name, pin.on or "", angle, contact.friction)
     return replace(contact, normal=normal)
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..analysis.pins.landing import Footing
 from ..arrays import FloatArray
 from ..constraints.contact_setup import detailed_contact
 from ..constraints.evaluation_context import EvaluationContext
@@ -20,22 +21,30 @@ from ..transcription.contact_pins import PointContact
 from ..transcription.motion import Motion
 from ..transcription.transcription import Transcription
 from ..unseen.support_force import harness, support_force
+from .footing import on_faces
 
 MAX_SPAN = 0.08  # s, between knots that are not the fit's
 MAX_HELD_SPAN = 0.04  # s; a held frame tells nothing of the swing that physics makes of it
 
 
 def resampled_fit(
-    fit: Fit, problem: MotionProblem, context: EvaluationContext, added: dict[str, PointRequest]
+    fit: Fit,
+    problem: MotionProblem,
+    context: EvaluationContext,
+    added: dict[str, PointRequest],
+    footing: Footing,
 ) -> Motion:
     """The reference on the problem's own contacts, timeline and knots, without constraints. Added
-    contacts take over what they can of unseen support."""
+    contacts take over what they can of unseen support. footing: where contacts shall be.
+
+    Raises UnknownPhaseIn, BadTiming, TooSteep."""
     reference, schedule = context.reference, context.schedule
     t = reference.transcription
     coarse = problem.requests.solution.longest_span
     same = context.timeline.unchanged and coarse is None and not added
     if same and len(schedule.contacts) == len(t.contacts):
         contacts = tuple(detailed_contact(c, problem, context, None) for c in t.contacts)
+        contacts = on_faces(contacts, footing)
         if all(new is old for new, old in zip(contacts, t.contacts, strict=True)):
             return reference
         return replace(reference, transcription=replace(t, contacts=contacts))
@@ -45,8 +54,8 @@ def resampled_fit(
     if support is not None:
         points += harness(t.character)
         extra += [t for each in support.intervals for t in (each.start, each.end)]
-    contacts = tuple(
-        detailed_contact(c, problem, context, added.get(c.contact.name)) for c in plain
+    contacts = on_faces(
+        [detailed_contact(c, problem, context, added.get(c.contact.name)) for c in plain], footing
     )
     if coarse is None:
         basis = _mapped_basis(t.basis, context, extra)

@@ -28,7 +28,7 @@ from ..solid.room import check_room
 from ..solid.shape_changes import ShapeChanges
 from ..transcription.motion import Motion
 from .anticipation import Jump, changed_jumps
-from .footing import check_sunk, on_faces
+from .footing import check_sunk
 from .initial_guess import resampled_fit
 from .platforms import find_standing, recorded_in
 from .warm_start import Standing
@@ -86,9 +86,9 @@ def requested(fit: Fit, problem: MotionProblem) -> Requested:
     added = {r.name: r for r in requests.points if r.environment}
     contacts = [added_contact(request, context) for request in added.values()]
     context = replace(context, schedule=with_added(context.schedule, contacts))
-    start = resampled_fit(fit, problem, context, added)
-    fitted = Standing(start.places, recorded_in(fit, context))
     target, footing = find_standing(fit, problem, context)
+    start = resampled_fit(fit, problem, context, added, footing)
+    fitted = Standing(start.places, recorded_in(fit, context))
     flesh = shape_flesh(problem, fit.performance)
     changes = ShapeChanges.of(requests.shapes, context.character, flesh)
     if requests.solution.solid:
@@ -97,7 +97,7 @@ def requested(fit: Fit, problem: MotionProblem) -> Requested:
             check_room(
                 problem.scene, reference.transcription, context.schedule, target.places, changes
             )
-    return Requested(context, on_faces(start, footing), fitted, target, reference, changed, changes)
+    return Requested(context, start, fitted, target, reference, changed, changes)
 
 
 def check_places(

@@ -87,7 +87,7 @@ FREE = st.just((None, None))
 POINT_BOUNDS = st.tuples(*[FREE | bounds_of(NUMBERS)] * 3).filter(lambda b: any(map(any, b)))
 PLACES = st.just({}) | st.builds(dict, place=VECTORS) | st.builds(dict, path=PATHS)
 GRIPS = st.sampled_from([{}, {"environment": True}, {"environment": True, "grip": True}])
-SURFACES = st.builds(dict, axes=st.just(PointAxes.SURFACE), normal=DIRECTIONS)
+SURFACES = st.builds(dict, axes=st.sampled_from(PointAxes), normal=DIRECTIONS)
 POINTS = st.builds(
     lambda place, grip, axes, **rest: PointRequest(**rest, **place, **grip, **axes),
     place=PLACES,

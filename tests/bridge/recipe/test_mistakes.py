@@ -61,7 +61,6 @@ WRONG = [  # what stands in FULL, and what it is replaced by, whose last line is
     ("forward = 0.5", 'forward = 0.5\naxes = "wrold"'),
     ("forward = 0.5", 'axes = "world"\nforward = 0.5'),
     ("forward = 0.5", "forward = 0.5\nrelative = [1, 2, 3]"),
-    ("forward = 0.5", "forward = 0.5\nnormal = [1, 2, 3]"),
     ("at_least = { up = 0.3 }", "at_least = { x = 0.3 }"),
     ("at_least = { up = 0.3 }", "at_least = { upp = 0.3 }"),
     ("at_least = { up = 0.3 }", "at_least = 0.3"),

@@ -89,7 +89,8 @@ def test_what_was_not_asked_is_not_written() -> None:
         ('axes = "travel"\nrelative = [1, 2, 3]', PointAxes.TRAVEL, (1.0, 2.0, 3.0)),
         ("at_most = { z = 1 }", PointAxes.WORLD, (0.0, 0.0, 0.0)),
         ("at_most = { along = 1 }", PointAxes.SURFACE, (0.0, 0.0, 0.0)),
-        ("normal = [1, 0, 0]", PointAxes.SURFACE, (0.0, 0.0, 0.0)),
+        ("relative = [1, 2, 3]\nnormal = [1, 0, 0]", PointAxes.WORLD, (1.0, 2.0, 3.0)),
+        ("left = 2\nnormal = [1, 0, 0]", PointAxes.TRAVEL, (0.0, 2.0, 0.0)),
     ],
 )
 def test_axes_follow_from_the_names_of_axes(keys: str, axes: PointAxes, relative: tuple) -> None:

@@ -22,6 +22,7 @@ from hangtime.solver.data.faults import (
     UnknownObject,
 )
 from hangtime.solver.data.problem import MotionProblem, Pin
+from hangtime.solver.data.requests import PointRequest, Requests, When
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.scaling import scaled_problem
 from hangtime.solver.data.scene import SceneObject, SceneRole
@@ -33,7 +34,7 @@ from hangtime.solver.solid.solid_world import MOST_ROWS
 from hangtime.solver.stages.footing import check_sunk, find_footing
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.solver.stages.setup import set_up
-from hangtime.tests.helpers.fitted_hop import fitted_hop
+from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, fitted_hop, frames_of
 from hangtime.tests.helpers.meshes import box, thing
 
 DEEPEST = 2.0  # mm, beyond what the soles have in the recording's floor
@@ -147,6 +148,23 @@ def test_who_is_at_the_face_of_a_wall_is_not_below_its_top() -> None:
         check_sunk((wall(0.06),), fitted_hop().schedule, recorded_footing())
     assert (caught.value.metres, caught.value.beside) == (pytest.approx(0.06), True)
     assert "6.0 cm behind the face at its side" in sentence(caught.value)
+
+
+def test_a_point_that_pushes_back_at_a_wall_is_pushed_off_it() -> None:
+    start, _ = frames_of(HOP_CLIP, HOP)
+    hand = PointRequest(
+        "Hand",
+        "RightHand",
+        When(frames=(start, start + 30)),
+        place=(0.0, 0.05, 1.4),
+        environment=True,
+    )
+    wall = thing("Wall", box((3.0, 0.2, 3.0)), (0.0, -0.1, 1.4), role=SceneRole.OBSTACLE)
+    for scene, normal in (((wall,), (0.0, 1.0, 0.0)), ((), (0.0, 0.0, 1.0))):
+        problem = MotionProblem(requests=Requests(points=(hand,)), scene=scene)
+        contacts = set_up(fitted_hop(), problem).start.transcription.contacts
+        (held,) = (c for c in contacts if c.contact.name == "Hand")
+        assert tuple(held.normal) == pytest.approx(normal)
 
 
 @pytest.mark.parametrize("height", [0.0, 0.02])

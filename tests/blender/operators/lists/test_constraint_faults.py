@@ -158,7 +158,15 @@ def no_force(rig: bpy.types.Object) -> None:
 
 
 def no_normal(rig: bpy.types.Object) -> None:
-    added(rig, KINDS["POINT"], "foot", name="Mine", normal=(0.0, 0.0, 0.0))
+    added(
+        rig,
+        KINDS["POINT"],
+        "foot",
+        name="Mine",
+        environment=True,
+        use_normal=True,
+        normal=(0.0,) * 3,
+    )
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,61 @@
+"""The faces that contacts push against beside those they stand on: walls, as the scene has them.
+
+A foot on the floor beside a wall, or on a crate's rim, stands; what is at a steep face and on
+nothing pushes off from that.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...arrays import BoolArray, FloatArray
+from ...body.character import Character
+from ...data.constants import UP
+from ...data.contacts import Contact
+from ...data.problem import MotionProblem
+from ...numerics.rotations import unit
+from ...scene.boxes import still_near
+from ...scene.steep import is_steep
+from ...scene.triangle_mesh import TriangleMesh, placed_mesh
+
+OFF = 0.04  # m from a part's skin, within which a face is what it touches (grounding.py)
+
+
+def pushed_normals(
+    problem: MotionProblem,
+    contacts: Sequence[Contact],
+    places: FloatArray,
+    character: Character,
+    floor_m: float,
+) -> FloatArray:
+    """(n, 3) normals of what contacts at places (n, 3) m push against: those that the artist gives,
+    or else of the scene's steep faces that they are at; up for all others."""
+    normals = np.tile(UP, (len(places), 1))
+    reach = OFF + _thickness(contacts, character)
+    free = places[:, 2] > floor_m + reach
+    nearest = reach.copy()
+    for thing in still_near(problem.scene, places, float(reach.max(initial=0.0))):
+        mesh = placed_mesh(thing)
+        free &= ~_on_top(mesh, places, reach)
+        found = mesh.distances(places)
+        near = (np.abs(found.distance) < nearest) & is_steep(found.normal)
+        normals[near], nearest[near] = found.normal[near], np.abs(found.distance)[near]
+    normals[~free] = UP
+    given = {r.name: r.normal for r in problem.requests.points if r.normal is not None}
+    for i, contact in enumerate(contacts):
+        if contact.name in given:
+            normals[i] = unit(np.array(given[contact.name], dtype=float))
+    return normals
+
+
+def _on_top(mesh: TriangleMesh, places: FloatArray, reach: FloatArray) -> BoolArray:
+    """(n,) whether places are at the highest face above or below them, on which they can stand."""
+    top = mesh.heights(places[:, :2])
+    return np.asarray((np.abs(places[:, 2] - top.z) < reach) & ~is_steep(top.normal))
+
+
+def _thickness(contacts: Sequence[Contact], character: Character) -> FloatArray:
+    """(n,) m, from the middle of what contacts are of to its skin: a point within a limb is so far
+    from what that touches."""
+    half = {body.bone: 0.5 * float(body.box_size.min()) for body in character.bodies}
+    return np.array([half.get(contact.bone, 0.0) for contact in contacts])
