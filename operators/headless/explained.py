@@ -30,5 +30,5 @@ def explained(fault: Fault, recipe: Path | None) -> str:
 def _remedies(fault: Fault) -> list[str]:
     """What carries the body, as a recipe has it, where that is told."""
     if isinstance(fault, UnseenSupport):
-        return [*support_texts(fault.boxes), *added_texts(fault.hands)]
+        return [*support_texts(fault.boxes), *added_texts((*fault.hands, *fault.walls))]
     return added_texts(fault.hands) if isinstance(fault, OffBalance) else []

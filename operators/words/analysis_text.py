@@ -48,8 +48,9 @@ def _unseen(analysis: Analysis) -> list[str]:
     unseen = [each for each in analysis.unseen if isinstance(each, UnseenSupport)]
     boxes = [box for each in unseen for box in each.boxes]
     leaning = (e for e in analysis.unseen if isinstance(e, UnseenSupport | OffBalance))
-    hands = dict.fromkeys(contact for each in leaning for contact in each.hands)
-    return ["", *told, *support_texts(boxes), *added_texts(hands)] if told else []
+    added = dict.fromkeys(contact for each in leaning for contact in each.hands)
+    added |= dict.fromkeys(contact for each in unseen for contact in each.walls)
+    return ["", *told, *support_texts(boxes), *added_texts(added)] if told else []
 
 
 def _contact_lines(analysis: Analysis) -> list[str]:

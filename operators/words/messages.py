@@ -99,7 +99,8 @@ def _variant(fault: Fault) -> int:
         case faults.UnseenSupport():
             carrying = fault.leaning, bool(fault.boxes), bool(fault.hands), fault.rate is not None
             mistaken = fault.exchanged, fault.skidding, fault.lying, fault.resting
-            return max(i for i, each in enumerate((True, *carrying, *mistaken)) if each)
+            every = (True, *carrying, *mistaken, bool(fault.walls))
+            return max(i for i, each in enumerate(every) if each)
         case faults.OffBalance():
             return 2 if fault.hands else bool(fault.resting)
         case faults.UnseenSupports():

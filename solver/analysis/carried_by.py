@@ -15,7 +15,7 @@ from ..data.scene import SupportBox
 from ..numerics.runs import runs
 from ..scene.belt import belt_speed
 from ..scene.fall_rate import fitting_rate, is_pulled_down
-from ..scene.support import boxes_beneath
+from ..scene.support import boxes_beneath, steps_on_walls
 from ..unseen.held import is_held
 from .balance import (
     SURELY_LASTS,
@@ -58,17 +58,20 @@ def unseen_carriers(
         rate = agreed if _fitting_rate(performance, gap, floor_m) == agreed else None
         boxes: tuple[SupportBox, ...] = ()
         hands: tuple[AddedContact, ...] = ()
+        walls: tuple[AddedContact, ...] = ()
         leaning = _leans(performance, gap, floor_m)
         if leaning:
             hands = _hands(performance, schedule, gap, low_palms(performance))
         elif rate is None:
             boxes = boxes_beneath(performance.times, points, gap, floor_m)
+            walls = () if boxes else _on_walls(performance, gap)
         on_floor = rate is None and not boxes and gap in low
         yield UnseenSupport(
             *(first, last, boxes, hands, rate, recording.rate),
             leaning=leaning,
             skidding=on_floor and gap in slid,
             resting=on_floor and gap not in slid,
+            walls=walls,
         )
 
 
@@ -100,6 +103,15 @@ def _spans(
     """Scene frames."""
     recording = performance.recording
     return tuple((_frame(recording, each.start), _frame(recording, each.end)) for each in intervals)
+
+
+def _on_walls(performance: Performance, gap: Interval) -> tuple[AddedContact, ...]:
+    """The contacts of feet that rest on something steep during a gap."""
+    recording, points = performance.recording, contact_points(performance)[0]
+    return tuple(
+        AddedContact(name, _frame(recording, step.start), _frame(recording, step.end))
+        for name, step in steps_on_walls(performance.times, points, gap)
+    )
 
 
 def _hands(

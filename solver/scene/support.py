@@ -10,9 +10,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from ..data.constants import DEFAULT_FRICTION
 from ..data.contacts import Contact, ContactPoint, ContactSchedule, Interval
 from ..data.recording import Recording
 from ..data.scene import SceneObject, SceneRole, SupportBox
+from ..numerics.runs import runs
 from .carrier import REACH, Carrier
 from .object_motion import ObjectMotion
 from .triangle_mesh import placed_mesh
@@ -126,7 +128,8 @@ def boxes_beneath(
 ) -> tuple[SupportBox, ...]:
     """Boxes that would carry the feet that rest during `gap`, one for each height, lowest first.
 
-    times: (T,) s. points: by name ("Left heel"). None where no foot rests above the floor.
+    times: (T,) s. points: by name ("Left heel"). None where no foot rests above the floor, or on a
+    wall alone.
     """
     during = (times >= gap.start) & (times <= gap.end)
     rests = _rests(times, points, during)
@@ -138,6 +141,19 @@ def boxes_beneath(
         if top - floor_m > LEAST_HEIGHT:
             found.append(_box(_Rests(rests.places[there], rests.ahead[there]), floor_m, top))
     return tuple(found)
+
+
+def steps_on_walls(
+    times: FloatArray, points: Mapping[str, ContactPoint], gap: Interval
+) -> tuple[tuple[str, Interval], ...]:
+    """The points of feet that rest on something steep during `gap`, in order of time, and when."""
+    during = (times >= gap.start) & (times <= gap.end)
+    steps = [
+        (name, Interval(float(times[first]), float(times[last])))
+        for name, point in _feet(points).items()
+        for first, last in runs(_resting(times, point, during) & _on_wall(points, name))
+    ]
+    return tuple(sorted(steps, key=lambda step: step[1].start))
 
 
 def on_boxes(boxes: Sequence[SupportBox], ground: Heights) -> Heights:
@@ -157,13 +173,16 @@ def on_boxes(boxes: Sequence[SupportBox], ground: Heights) -> Heights:
 
 
 def _rests(times: FloatArray, points: Mapping[str, ContactPoint], during: BoolArray) -> _Rests:
-    """Where points of the feet rest: of those that do at an instant, the lowest carry."""
-    feet = {name: point for name, point in points.items() if point.kind.is_of_foot}
-    resting = np.array([_resting(times, point, during) for point in feet.values()])
+    """Where points of the feet rest but on walls: of those that do at an instant, the lowest
+    carry."""
+    feet = _feet(points)
+    resting = np.array(
+        [_resting(times, point, during) & ~_on_wall(feet, name) for name, point in feet.items()]
+    )
     tracks = np.array([point.track for point in feet.values()])
     height = np.where(resting, tracks[..., 2], np.inf)
     carrying = resting & (height < height.min(axis=0) + REACH)
-    ahead = np.array([_ahead(feet, name) for name in feet])
+    ahead = np.array([_ahead(feet, name)[:, :2] for name in feet])
     return _Rests(tracks[carrying], ahead[carrying])
 
 
@@ -178,11 +197,23 @@ def _resting(times: FloatArray, point: ContactPoint, during: BoolArray) -> BoolA
     return slow
 
 
+def _on_wall(feet: Mapping[str, ContactPoint], name: str) -> BoolArray:
+    """(T,) whether a point's sole points up too steeply for anything but a wall: on level ground
+    heels rise so far, over toes that lie flat, but no toes over heels."""
+    ahead = _ahead(feet, name)
+    across = np.linalg.norm(ahead[:, :2], axis=1)
+    return np.asarray(ahead[:, 2] > DEFAULT_FRICTION * across)
+
+
 def _ahead(feet: Mapping[str, ContactPoint], name: str) -> FloatArray:
-    """(T, 2) m, level, from the heel to the toe of a point's foot."""
+    """(T, 3) m, from the heel to the toe of a point's foot."""
     side = name.rpartition(" ")[0]
-    heel, toe = (feet[f"{side} {end}"].track[:, :2] for end in ("heel", "toe"))
+    heel, toe = (feet[f"{side} {end}"].track for end in ("heel", "toe"))
     return np.asarray(toe - heel)
+
+
+def _feet(points: Mapping[str, ContactPoint]) -> dict[str, ContactPoint]:
+    return {name: point for name, point in points.items() if point.kind.is_of_foot}
 
 
 def _box(rests: _Rests, floor_m: float, top: float) -> SupportBox:

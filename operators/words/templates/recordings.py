@@ -137,6 +137,11 @@ RECORDINGS: dict[type[Fault], str | tuple[str, ...]] = {
         "so something unseen carries the body; let the feet touch. Where a chair or a table "
         "carries it this may stay so, or a Point with Pushes Back on the pelvis or the hand takes "
         "it over.",
+        "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
+        "fall: the feet rest with steep soles, as on a wall. Let them touch in these frames "
+        "({walls:contacts}): Add Contact, the + beside the contacts of a stance, or an "
+        "[[add_contact]] in a recipe; and list the wall in the panel World, or as an [[object]], "
+        "which they then push off from.",
     ),
     faults.ScaledStrip: "The body falls as gravity has it at {rate:.5g} frames a second, but the "
     "scene has {scene_rate:.5g} (frames {first:g} to {last:g}), and the NLA strip “{strip}” plays "

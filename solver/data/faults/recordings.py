@@ -270,7 +270,8 @@ class UnseenSupport(Fault):
     body would fall as gravity has it, where the scene's, scene_rate, is another. exchanged: whether
     the legs are there, so that none of these is meant. skidding: whether feet are on the ground,
     and go from place to place. resting: whether they stay there, without a contact. lying: whether
-    another axis than Z points from the feet to the head.
+    another axis than Z points from the feet to the head. walls: contacts of feet that rest on
+    something steep, where none rests on what boxes are for.
     """
 
     first: float
@@ -284,6 +285,7 @@ class UnseenSupport(Fault):
     skidding: bool = False
     lying: bool = False
     resting: bool = False
+    walls: tuple[AddedContact, ...] = ()
 
 
 @dataclass

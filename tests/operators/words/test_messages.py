@@ -279,6 +279,8 @@ def test_support_of_which_nothing_is_known_is_told_at_once() -> None:
     assert "for hands, knees or the trunk are on it" in first
     assert "20 to 31, 40 to 55" in second
     assert "hands, knees" in sentence(crawls[0])
+    walls = UnseenSupport(60.0, 75.0, walls=(AddedContact("Left toe", 61.0, 70.0),))
+    assert "as on a wall. Let them touch in these frames (Left toe" in sentence(walls)
     legs = UnseenSupport(60.0, 70.0, exchanged=True)
     assert together([legs, bare[0]]) == [legs, bare[0]]
     assert "the left leg for the right one; exchange them back" in sentence(legs)

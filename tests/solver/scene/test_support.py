@@ -13,7 +13,13 @@ from hangtime.operators.words.analysis_text import starter_recipe
 from hangtime.solver.analysis.analyse import Analysis, analyse
 from hangtime.solver.analysis.grounding import PLACE_BAND
 from hangtime.solver.arrays import FloatArray
-from hangtime.solver.data.contacts import KnownContacts, PhaseKind
+from hangtime.solver.data.contacts import (
+    ContactPoint,
+    Interval,
+    KnownContacts,
+    PhaseKind,
+    PointKind,
+)
 from hangtime.solver.data.faults import UnseenSupport
 from hangtime.solver.data.problem import ContactEdit, MotionProblem, Unseen
 from hangtime.solver.data.recording import Recording
@@ -21,6 +27,7 @@ from hangtime.solver.data.scene import SceneObject, SceneRole, SupportBox
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.examination.repair import repaired
 from hangtime.solver.doctor.finding import Finding, FindingKind
+from hangtime.solver.scene.support import boxes_beneath, steps_on_walls
 from hangtime.solver.worker.pipeline import measure
 from hangtime.solver.worker.protocol import Analysed, Request, RequestKind
 from hangtime.solver.worker.service import Service
@@ -73,6 +80,23 @@ def test_a_box_is_offered_whose_top_is_at_the_soles() -> None:
     np.testing.assert_allclose(box.place, [*places.mean(axis=0)[:2], 0.0], atol=0.05)
     assert 0.3 < box.size[0] < 0.45  # a foot's length, and its edge
     assert 0.2 < box.size[1] < 0.6
+
+
+@pytest.mark.parametrize(("degrees", "wall"), [(75.0, True), (0.0, False), (-60.0, False)])
+def test_no_box_is_offered_for_soles_that_point_up(degrees: float, *, wall: bool) -> None:
+    """Of who stands on the toes heels are as high."""
+    times, slope = np.linspace(0.0, 0.5, 31), np.radians(degrees)
+    tip = 0.2 * np.array([0.0, np.cos(slope), np.sin(slope)])
+    points = {
+        f"Left {end}": ContactPoint(
+            kind, "LeftFoot", np.zeros(3), np.tile([0.0, 0.0, 1.0] + share * tip, (31, 1))
+        )
+        for end, kind, share in (("heel", PointKind.HEEL, 0.0), ("toe", PointKind.TOE, 1.0))
+    }
+    gap = Interval(0.0, 0.5)
+    assert bool(boxes_beneath(times, points, gap, 0.0)) is not wall
+    told = [name for name, _ in steps_on_walls(times, points, gap)]
+    assert told == (["Left heel", "Left toe"] if wall else [])
 
 
 def test_the_box_explains_what_carried_the_body() -> None:
