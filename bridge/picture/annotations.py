@@ -122,11 +122,13 @@ class Bar:
 
 @dataclass(frozen=True)
 class Thing:
-    """An object of the scene. points: (V, 3) m. triangles: (F, 3) their indices."""
+    """An object of the scene. points: (V, 3) m. triangles: (F, 3) their indices. wall: whether it
+    is as high as the body, and so would hide what is behind it."""
 
     points: Points
     triangles: IntArray
     span: TimeSpan = ALWAYS
+    wall: bool = False
 
 
 class Tone(Enum):

@@ -213,7 +213,7 @@ def _marks(
         if isinstance(mark, Thing | Bar) and not slide.any():
             when = when[-1:]
         if isinstance(mark, Thing):
-            yield from _things(mark, touches, slide, when)
+            yield from _things(mark, touches, slide, when, row.com)
         else:
             yield from (moved(at(mark, i), np.eye(3), slide[i] * RIGHT) for i in when)
 
@@ -223,17 +223,27 @@ def _things(
     touches: Sequence[tuple[FloatArray, Sequence[int]]],
     slide: FloatArray,
     when: Sequence[int],
+    com: FloatArray,
 ) -> Iterable[Thing]:
     """An object with those figures that touch it, as a step goes on below them; one that none does
-    as often as it is beside itself. touches: places (3,) m, before they slide, with instants."""
+    as often as it is beside itself, but a wall once, with the figure that comes nearest. touches:
+    places (3,) m, before they slide, with instants. com: (T, 3) m, likewise."""
     copies = {i: at(thing, i) for i in when}
     on = [i for i in when if any(i in held and _is_on(copies[i], p) for p, held in touches)]
+    if thing.wall and not on:
+        when = sorted(when, key=lambda i: _apart(copies[i], com[i]))[:1]
     end = -np.inf
     for k, i in enumerate(on or when):
         low, high = (edge(copies[i].points[:, 0]) + slide[i] for edge in (np.min, np.max))
-        if on or low > end:
+        if (on and not thing.wall) or low > end:
             end = high
             yield moved(copies[i], np.eye(3), slide[i] * RIGHT + k * STAGGER)
+
+
+def _apart(thing: Thing, place: FloatArray) -> float:
+    """M, level, from the box around an object to a place (3,) m."""
+    low, high = thing.points.min(axis=0), thing.points.max(axis=0)
+    return float(np.linalg.norm(np.maximum(np.maximum(low - place, place - high), 0.0)[:2]))
 
 
 def _is_on(thing: Thing, place: FloatArray) -> bool:

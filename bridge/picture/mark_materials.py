@@ -41,4 +41,5 @@ FINISHES: Mapping[Look, Finish] = {
     Look.WEIGHT: Finish(srgb("6b4a2f"), shadow=True),
     Look.ENVIRONMENT: Finish(srgb("8b929d"), shadow=True),
     Look.THING: Finish(srgb("d9c3a0"), shadow=True),
+    Look.WALL: Finish(srgb("c9a66b"), _glass(0.3, 0.5)),
 }

@@ -32,6 +32,7 @@ class Look(Enum):
     WEIGHT = auto()  # brown
     ENVIRONMENT = auto()  # as the floor, darker
     THING = auto()  # light wood, of the scene
+    WALL = auto()  # the same, see-through
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,7 @@ class Solid:
 
     @property
     def smooth(self) -> bool:
-        return self.look not in (Look.VEIL, Look.WEIGHT, Look.THING)
+        return self.look not in (Look.VEIL, Look.WEIGHT, Look.THING, Look.WALL)
 
 
 def merged(parts: Iterable[Solid]) -> tuple[Solid, ...]:
@@ -71,8 +72,8 @@ def solids(mark: Mark) -> Iterator[Solid]:
             yield Solid(Look.WEIGHT, _box(centre, rotation, size))
         case Bar(start, end, radius):
             yield Solid(Look.ENVIRONMENT, tube(np.array([start, end]), radius))
-        case Thing(points, triangles):
-            yield Solid(Look.THING, quartered(points, triangles))
+        case Thing(points, triangles, wall=wall):
+            yield Solid(Look.WALL if wall else Look.THING, quartered(points, triangles))
         case Tint():  # colours a limb, adds nothing
             return
 

@@ -175,12 +175,15 @@ def _carried(added: AddedMass, figure: _Posed) -> Iterator[Box]:
 
 def _thing(thing: SceneObject, line: Timeline, times: FloatArray, com: FloatArray) -> Thing:
     """An object, with the figures that are by it: over it, or nearly. com: (T, 3) m, of the body at
-    `times` (T,) s."""
+    `times` (T,) s. What reaches from below the body to above it where it comes nearest is a wall."""
     places, turns = ObjectMotion.of(thing, line.first_frame, line.rate).at(times)
     if not thing.moves:
         places, turns = places[0], turns[0]
     points = thing.vertices @ np.swapaxes(turns, -1, -2) + places[..., None, :]
     low, high = points.min(axis=-2) - BESIDE, points.max(axis=-2) + BESIDE
-    by = ((com > low) & (com < high))[:, :2].all(axis=1)
+    away = np.maximum(np.maximum(low - com, com - high), 0.0)[:, :2]
+    by = ~away.any(axis=1)
     when = times[by] if by.any() else times[[0, -1]]
-    return Thing(points, thing.triangles, (float(when[0]), float(when[-1])))
+    inside = (com > low) & (com < high)
+    wall = not thing.part_of and bool(inside[np.linalg.norm(away, axis=1).argmin(), 2])
+    return Thing(points, thing.triangles, (float(when[0]), float(when[-1])), wall)

@@ -1,6 +1,6 @@
 """The pictures of a result: the body at instants, with what holds it (thesis 6)."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, replace
 from itertools import combinations
 from pathlib import Path
@@ -12,7 +12,7 @@ from ...bridge.picture.film import draw_film
 from ...bridge.picture.layout import RAISED, canvas_axes
 from ...bridge.picture.render import draw_sheet
 from ...bridge.picture.sheet import Limb, SheetRow, View
-from ...solver.analysis.performance import above_ground
+from ...solver.analysis.performance import above_ground, contact_points
 from ...solver.analysis.pins.pinned_places import facing
 from ...solver.arrays import FloatArray
 from ...solver.body.anatomy import Part
@@ -20,6 +20,8 @@ from ...solver.body.character import Character
 from ...solver.data.constants import UP
 from ...solver.data.contacts import Phase, PhaseKind
 from ...solver.data.problem import MotionProblem, OffsetAxes, Pin
+from ...solver.scene.steep import is_steep
+from ...solver.scene.support import points_up
 from ...solver.stages.implicit import Adaptation
 from ...solver.transcription.motion import Motion
 
@@ -89,24 +91,25 @@ def recorded_row(adaptation: Adaptation, marks: Sequence[Mark] = ()) -> SheetRow
     """The recording with the contacts found in it."""
     performance, schedule = adaptation.fit.performance, adaptation.fit.schedule
     parts = {body.bone: body.part for body in performance.character.bodies}
-    feet = [contact for contact in schedule.contacts if parts[contact.bone] in FEET]
-    others = [contact for contact in schedule.contacts if contact not in feet]
-    depths = above_ground(others, performance.character, schedule.floor_m).tolist()
+    depths = above_ground(schedule.contacts, performance.character, schedule.floor_m).tolist()
+    walls = on_walls(adaptation)
     held = [
-        ContactHold(parts[c.bone], c.place, (c.start, c.end), False, depth)
-        for c, depth in zip(others, depths, strict=True)
+        ContactHold(parts[c.bone], c.place, (c.start, c.end), False, depth, c.name in walls)
+        for c, depth in zip(schedule.contacts, depths, strict=True)
     ]
-    beside = (*(Sphere(hold.place, hold.span) for hold in held), *marks)
+    feet = [hold for hold in held if hold.stands]
+    others = [hold for hold in held if not hold.stands]
+    beside = (*(Sphere(hold.place, hold.span) for hold in others), *marks)
     if not any(isinstance(mark, Thing) for mark in marks):
-        beside += tuple(posts(held, schedule.floor_m, performance.times, performance.com))
+        beside += tuple(posts(others, schedule.floor_m, performance.times, performance.com))
     return SheetRow(
         f"Recording: {performance.recording.name}",
         performance.times,
         tuple(limbs(performance.character, performance.rotations, performance.centres)),
         performance.com,
-        np.array([c.place for c in feet]).reshape(-1, 3),
+        np.array([hold.place for hold in feet]).reshape(-1, 3),
         key_times(adaptation.fit.motion, schedule.phases),
-        tuple((c.start, c.end) for c in feet),
+        tuple(hold.span for hold in feet),
         beside,
     )
 
@@ -117,9 +120,9 @@ def adapted_row(adaptation: Adaptation, title: str, marks: Sequence[Mark] = ()) 
     t, times = motion.transcription, instants(motion)
     posed, com = motion.pose(times), motion.com(times)
     floor = adaptation.setup.schedule.floor_m
-    holds = tuple(contact_holds(motion, times, floor))
-    feet = [hold for hold in holds if hold.part in FEET and hold.place.ndim == 1]
-    others = [hold for hold in holds if hold not in feet]
+    holds = tuple(contact_holds(motion, times, floor, on_walls(adaptation)))
+    feet = [hold for hold in holds if hold.stands]
+    others = [hold for hold in holds if not hold.stands]
     ground = [*adaptation.fit.places[:, 2], *(hold.place[2] for hold in feet)]
     beside = (*(Sphere(hold.place, hold.span) for hold in others), *bars(others), *marks)
     if not any(isinstance(mark, Thing) for mark in marks):
@@ -142,7 +145,7 @@ class ContactHold:
     """Place, m, and interval of a contact of one part of the body.
 
     place: (3,), or (T, 3) where it moves. grip: whether the part holds on there. depth: m from the
-    place down to what a part that does not rests on.
+    place down to what a part that does not rests on. wall: whether it is against something steep.
     """
 
     part: Part
@@ -150,10 +153,33 @@ class ContactHold:
     span: TimeSpan
     grip: bool
     depth: float = 0.0
+    wall: bool = False
+
+    @property
+    def stands(self) -> bool:
+        """Whether a foot stands there on ground that stays."""
+        return self.part in FEET and self.place.ndim == 1 and not self.wall
 
 
-def contact_holds(motion: Motion, times: FloatArray, floor: float) -> Iterator[ContactHold]:
-    """Every contact of a motion; where it moves, at the instants (T,). floor: m, as recorded."""
+def on_walls(adaptation: Adaptation) -> frozenset[str]:
+    """The names of contacts against something steep: by the scene, or by soles as recorded."""
+    performance, schedule = adaptation.fit.performance, adaptation.fit.schedule
+    contacts = adaptation.motion.transcription.contacts
+    found = {c.contact.name for c in contacts if is_steep(c.normal[None])[0]}
+    points, times = contact_points(performance)[0], performance.times
+    for contact in schedule.contacts:
+        if contact.point in points and points[contact.point].kind.is_of_foot:
+            middle = 0.5 * (contact.start + contact.end)
+            if points_up(points, contact.point)[np.abs(times - middle).argmin()]:
+                found.add(contact.name)
+    return frozenset(found)
+
+
+def contact_holds(
+    motion: Motion, times: FloatArray, floor: float, walls: Set[str] = frozenset()
+) -> Iterator[ContactHold]:
+    """Every contact of a motion; where it moves, at the instants (T,). floor: m, as recorded.
+    walls: the names of those against something steep."""
     t = motion.transcription
     depths = above_ground([each.contact for each in t.contacts], t.character, floor).tolist()
     for contact, place, depth in zip(t.contacts, motion.places, depths, strict=True):
@@ -162,7 +188,8 @@ def contact_holds(motion: Motion, times: FloatArray, floor: float) -> Iterator[C
         if contact.track is not None or contact.ride is not None:
             rigid = replace(contact, sole=None)
             place = rigid.holds(np.clip(times, *span)).of(place)
-        yield ContactHold(body.part, place, span, contact.friction is None, depth)
+        wall = contact.contact.name in walls
+        yield ContactHold(body.part, place, span, contact.friction is None, depth, wall)
 
 
 def posts(
@@ -173,7 +200,8 @@ def posts(
     for hold in holds:
         top = hold.place - hold.depth * UP
         body = np.interp(np.mean(hold.span), times, com[:, 2])
-        if not hold.grip and floor + RAISED < top[..., 2].min() and top[..., 2].max() < body:
+        rests = not hold.grip and not hold.wall
+        if rests and floor + RAISED < top[..., 2].min() and top[..., 2].max() < body:
             yield Bar(top * [1.0, 1.0, 0.0] + floor * UP, top, POST, hold.span)
 
 

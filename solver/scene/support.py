@@ -151,7 +151,7 @@ def steps_on_walls(
     steps = [
         (name, Interval(float(times[first]), float(times[last])))
         for name, point in _feet(points).items()
-        for first, last in runs(_resting(times, point, during) & _on_wall(points, name))
+        for first, last in runs(_resting(times, point, during) & points_up(points, name))
     ]
     return tuple(sorted(steps, key=lambda step: step[1].start))
 
@@ -177,7 +177,7 @@ def _rests(times: FloatArray, points: Mapping[str, ContactPoint], during: BoolAr
     carry."""
     feet = _feet(points)
     resting = np.array(
-        [_resting(times, point, during) & ~_on_wall(feet, name) for name, point in feet.items()]
+        [_resting(times, point, during) & ~points_up(feet, name) for name, point in feet.items()]
     )
     tracks = np.array([point.track for point in feet.values()])
     height = np.where(resting, tracks[..., 2], np.inf)
@@ -197,8 +197,8 @@ def _resting(times: FloatArray, point: ContactPoint, during: BoolArray) -> BoolA
     return slow
 
 
-def _on_wall(feet: Mapping[str, ContactPoint], name: str) -> BoolArray:
-    """(T,) whether a point's sole points up too steeply for anything but a wall: on level ground
+def points_up(feet: Mapping[str, ContactPoint], name: str) -> BoolArray:
+    """(T,) whether a point's sole points up, too steeply for anything but a wall: on level ground
     heels rise so far, over toes that lie flat, but no toes over heels."""
     ahead = _ahead(feet, name)
     across = np.linalg.norm(ahead[:, :2], axis=1)

@@ -10,6 +10,7 @@ bpy = pytest.importorskip("bpy")
 
 from hangtime.bridge.picture import cycles, layout
 from hangtime.bridge.picture.annotations import Thing
+from hangtime.bridge.picture.mark_materials import FINISHES
 from hangtime.bridge.picture.mark_meshes import Look
 from hangtime.bridge.picture.render import draw_sheet
 from hangtime.bridge.picture.scene import Floor, Painter
@@ -238,6 +239,14 @@ def test_an_object_that_nobody_touches_does_not_overlap_itself(rows):
     ends = copies(tier)
     assert len(ends) > 1
     assert (ends[1:, 0] > ends[:-1, 1]).all()
+
+
+def test_a_wall_that_nobody_touches_is_there_once_and_hides_nothing(rows):
+    row = replace(rows[0], marks=(replace(plate(2.0), wall=True),))
+    (tier,) = layout.lay_out([row]).tiers
+    (drawn,) = (solid for solid in tier.marks if solid.look is Look.WALL)
+    assert len(drawn.mesh.points) == 7
+    assert not FINISHES[Look.WALL].shadow
 
 
 def test_travel_runs_to_the_right_whatever_the_heading():

@@ -15,6 +15,7 @@ from hangtime.operators.headless.picture import (
     goes_sideways,
     heading,
     limbs,
+    on_walls,
     posts,
     recorded_row,
 )
@@ -26,8 +27,9 @@ from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import Hold, Requests
 from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.solver.stages.implicit import Adaptation, adapt
+from hangtime.solver.transcription.contact_pins import PointContact
 from hangtime.tests.helpers.clips import JUMP, load_recording
-from hangtime.tests.helpers.fitted_hop import fitted_hop
+from hangtime.tests.helpers.fitted_hop import fitted_hop, hop
 from hangtime.tests.helpers.meshes import box, thing
 
 NEAR = 0.06  # m, that a slice of the trunk is drawn beyond its box
@@ -117,6 +119,18 @@ def test_the_recording_is_drawn_with_what_it_stood_on_and_nothing_else() -> None
     assert tier.steps == ()
 
 
+def test_a_foot_on_a_wall_has_no_step() -> None:
+    fit = SimpleNamespace(performance=hop().performance, schedule=hop().schedule)
+    first, second, *_ = hop().schedule.contacts
+    held = (PointContact(first, 0, normal=np.array([0.0, 1.0, 0.0])), PointContact(second, 1))
+    motion = SimpleNamespace(transcription=SimpleNamespace(contacts=held))
+    found = on_walls(SimpleNamespace(fit=fit, motion=motion))  # type: ignore[arg-type]
+    assert found == {first.name}
+    hold = ContactHold(Part.FOOT, np.zeros(3), (0.0, 1.0), grip=False)
+    assert hold.stands
+    assert not replace(hold, wall=True).stands
+
+
 def test_hands_that_hold_on_are_at_a_bar_and_those_that_lean_on_the_floor_are_not() -> None:
     def drawn(grip: bool) -> list[Mark]:
         places = np.array([[0.3, 0.0, 0.05], [-0.3, 0.0, 0.05]])
@@ -139,5 +153,6 @@ def test_hands_that_rest_above_the_floor_have_a_post_below_the_palm(
     times, com = np.array([0.0, 1.0]), np.array([[0.0, 0.0, 0.9]] * 2)
     drawn = list(posts([hold], 0.0, times, com))
     assert len(drawn) == post
+    assert list(posts([replace(hold, wall=True)], 0.0, times, com)) == []
     for each in drawn:
         np.testing.assert_allclose([each.start, each.end], [[0.3, 0.1, 0.0], [0.3, 0.1, 0.15]])
