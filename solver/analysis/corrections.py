@@ -3,9 +3,11 @@
 from dataclasses import replace
 
 from ..contacts.events import snap
+from ..data.constants import UP
 from ..data.contacts import Contact, ContactSchedule
 from ..data.faults import BadTiming, BesideFrames, UnknownContactName
 from ..data.problem import MotionProblem
+from ..scene.support import StandingGround
 from .performance import Performance, contact_points, snap_tolerance
 
 
@@ -36,18 +38,22 @@ def corrected(
         span = (max(start, 0.0), min(end, schedule.duration))
         contacts[edit.name] = replace(contact, start=span[0], end=span[1])
     every = [*contacts.values()]
+    ground = StandingGround.of(schedule.floor_m, problem.scene, performance.recording)
     for added in problem.added:
         span = ((added.start_frame - first) / rate, (added.end_frame - first) / rate)
         within = (max(span[0], 0.0), min(span[1], schedule.duration))
         if within[0] > within[1] and span[0] <= span[1]:
             beside = added.start_frame if span[0] > 0.0 else added.end_frame
             raise BesideFrames(added.point, beside, *performance.recording.ends)
-        every.append(_added(added.point, within, performance))
+        every.append(_added(added.point, within, performance, ground))
     return snap(replace(schedule, contacts=tuple(every)), snap_tolerance(performance))
 
 
-def _added(name: str, span: tuple[float, float], performance: Performance) -> Contact:
-    """Contact of a point during (start, end) s, at the point's mean position then."""
+def _added(
+    name: str, span: tuple[float, float], performance: Performance, ground: StandingGround
+) -> Contact:
+    """Contact of a point during (start, end) s, at the point's mean position then, and on what
+    is there."""
     points, _ = contact_points(performance)
     if name not in points:
         raise UnknownContactName(name, tuple(points))
@@ -56,4 +62,5 @@ def _added(name: str, span: tuple[float, float], performance: Performance) -> Co
     if not during.any():
         raise BadTiming(name, span[1] - span[0])
     place = point.track[during].mean(axis=0)
-    return Contact(name, name, point.bone, point.offset, *span, place)
+    on = ground.at(place - point.depth * UP)
+    return Contact(name, name, point.bone, point.offset, *span, place, on=on)

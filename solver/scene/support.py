@@ -75,6 +75,12 @@ class StandingGround:
         )
         return replace(schedule, contacts=tuple(contacts))
 
+    def at(self, place: FloatArray) -> str | None:
+        """Name of the still object whose highest face a place (3,) m is at; None of the floor."""
+        height, owner = self._below(place[None])
+        on = owner[0] >= 0 and place[2] < height[0] + REACH
+        return self.still[int(owner[0])].thing.name if on else None
+
     def carrier(self, contact: Contact) -> Carrier | None:
         """What moves beneath a contact; its place is as seen from there until `placed`."""
         return next((each for each in self.carriers if each.name == contact.on), None)

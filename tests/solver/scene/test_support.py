@@ -12,6 +12,7 @@ from hangtime.bridge.recipe.problem import parse_recipe
 from hangtime.operators.words.analysis_text import starter_recipe
 from hangtime.solver.analysis.analyse import Analysis, analyse
 from hangtime.solver.analysis.grounding import PLACE_BAND
+from hangtime.solver.analysis.performance import point_depth
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.contacts import (
     ContactPoint,
@@ -21,7 +22,7 @@ from hangtime.solver.data.contacts import (
     PointKind,
 )
 from hangtime.solver.data.faults import UnseenSupport
-from hangtime.solver.data.problem import ContactEdit, MotionProblem, Unseen
+from hangtime.solver.data.problem import AddedContact, ContactEdit, MotionProblem, Unseen
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.scene import SceneObject, SceneRole, SupportBox
 from hangtime.solver.doctor.examination.diagnose import diagnose
@@ -33,6 +34,7 @@ from hangtime.solver.worker.protocol import Analysed, Request, RequestKind
 from hangtime.solver.worker.service import Service
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, frames_of, hop
+from hangtime.tests.helpers.meshes import box, thing
 
 DROP = 0.3  # m
 
@@ -80,6 +82,23 @@ def test_a_box_is_offered_whose_top_is_at_the_soles() -> None:
     np.testing.assert_allclose(box.place, [*places.mean(axis=0)[:2], 0.0], atol=0.05)
     assert 0.3 < box.size[0] < 0.45  # a foot's length, and its edge
     assert 0.2 < box.size[1] < 0.6
+
+
+@pytest.mark.parametrize(("higher", "on"), [(0.0, "Crate"), (0.2, None), (-0.2, None)])
+def test_a_contact_that_is_added_where_an_object_ends_is_on_it(
+    higher: float, on: str | None
+) -> None:
+    """So what else the recording has in the object may stay there."""
+    recording = load_recording(HOP_CLIP).window(*frames_of(HOP_CLIP, HOP))
+    middle = float(recording.frames[len(recording.frames) // 2])
+    touch = AddedContact("Left hand", middle, middle + 12)
+    bare = analyse(recording, MotionProblem(added=(touch,)))
+    (hand,) = (c for c in bare.schedule.contacts if c.point == "Left hand")
+    palm = hand.place[2] - point_depth("Left hand", bare.performance.character) + higher
+    crate = thing("Crate", box((1.0, 1.0, palm)), (*hand.place[:2], 0.5 * palm))
+    found = analyse(recording, MotionProblem(added=(touch,), scene=(crate,)))
+    (hand,) = (c for c in found.schedule.contacts if c.point == "Left hand")
+    assert hand.on == on
 
 
 @pytest.mark.parametrize(("degrees", "wall"), [(75.0, True), (0.0, False), (-60.0, False)])
