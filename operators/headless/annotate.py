@@ -175,7 +175,7 @@ def _carried(added: AddedMass, figure: _Posed) -> Iterator[Box]:
 
 def _thing(thing: SceneObject, line: Timeline, times: FloatArray, com: FloatArray) -> Thing:
     """An object, with the figures that are by it: over it, or nearly. com: (T, 3) m, of the body at
-    `times` (T,) s. What reaches from below the body to above it where it comes nearest is a wall."""
+    `times` (T,) s. What reaches from below it to above it where it comes nearest is a wall."""
     places, turns = ObjectMotion.of(thing, line.first_frame, line.rate).at(times)
     if not thing.moves:
         places, turns = places[0], turns[0]
