@@ -8,7 +8,7 @@ from textwrap import shorten
 
 from ...solver.data.faults import Fault, NoFit, NoSolution
 from ...solver.data.row_kinds import RowKind
-from .messages import Translate, missed, sentence
+from .messages import Translate, is_in_its_way, missed, sentence
 
 NO_MOTION = "No motion: {}"
 NO_FIT = "The recording itself cannot be held: {}"
@@ -62,7 +62,7 @@ def failure_of(fault: Fault, uid: int, of: str, translate: Translate = str) -> F
     rows = tuple(FailureRow(each.name, _begun_large(missed(each, translate))) for each in worst)
     first = missed(worst[0], translate)
     head = translate(NO_FIT if isinstance(fault, NoFit) else NO_MOTION).format(first)
-    advice = sentence(replace(fault, worst=()), translate)
+    advice = told if is_in_its_way(fault) else sentence(replace(fault, worst=()), translate)
     if fault.goes_part:
         advice = f"{advice} {translate(REACHED).format(round(100.0 * fault.reached))}"
     return Failure(uid, of, fault, head, advice, head, rows)

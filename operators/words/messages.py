@@ -86,6 +86,8 @@ def _variant(fault: Fault) -> int:
         case faults.UnreadableText():
             return fault.cure.value
         case faults.NoSolution():
+            if is_in_its_way(fault):
+                return 6
             told = (2 if fault.goes_part else 1) if fault.worst else 0
             return told + (3 if _begins_far_off(fault) else 0)
         case faults.RenamedBones():
@@ -116,6 +118,12 @@ def _variant(fault: Fault) -> int:
         case faults.RateChanged():
             return fault.while_solving
     raise TypeError(f"which words are for {type(fault).__name__}?")
+
+
+def is_in_its_way(fault: faults.NoSolution) -> bool:
+    """Whether a recording of which nothing was asked goes through something."""
+    through = bool(fault.worst) and fault.worst[0].kind is RowKind.SOLID
+    return fault.reason is Status.NO_BODY and through and not fault.asked
 
 
 def _begins_far_off(fault: faults.NoSolution) -> bool:

@@ -41,6 +41,10 @@ SOLVING: dict[type[Fault], str | tuple[str, ...]] = {
         "recording (rms). Correct the contacts' frames, or mend the recording, before you ask for "
         "less.{damages:damages} The best found goes {reached:percent} of the way; furthest off: "
         "{worst:missed}.",
+        "Nothing was asked for, and the recording itself goes through what is around it, deeper "
+        "than can be mended: {worst:missed}. Lower or move the object, or mend these poses; or, "
+        "where it stands on the object or leans on it, let a contact touch at its top (Add "
+        "Contact), and it may be in it as it was.",
     ),
     faults.NoFit: (
         "The recording's own contacts cannot be held by a motion that obeys physics."

@@ -264,6 +264,9 @@ def test_where_a_limb_stays_in_something_is_told() -> None:
     deep = Violation("Left foot in Roof", RowKind.SOLID, 118.0, 203.4)
     words = sentence(NoSolution(Status.NO_BODY, (deep,)))
     assert "Left foot in Roof stays in by 11.8 cm (frame 203)" in words
+    assert words.startswith("Nothing was asked for, and the recording itself")
+    assert words == failure_of(NoSolution(Status.NO_BODY, (deep,)), 1, "hangtime.adapt").text
+    assert "Ask for less" in sentence(NoSolution(Status.NO_BODY, (deep,), asked=("Landing",)))
 
 
 def test_support_of_which_nothing_is_known_is_told_at_once() -> None:
