@@ -31,10 +31,12 @@ def pushed_normals(
     """(n, 3) normals of what contacts at places (n, 3) m push against: those that the artist gives,
     or else of the scene's steep faces that they are at; up for all others."""
     normals = np.tile(UP, (len(places), 1))
+    if not len(places):
+        return normals
     reach = OFF + _thickness(contacts, character)
     free = places[:, 2] > floor_m + reach
     nearest = reach.copy()
-    for thing in still_near(problem.scene, places, float(reach.max(initial=0.0))):
+    for thing in still_near(problem.scene, places, float(reach.max())):
         mesh = placed_mesh(thing)
         free &= ~_on_top(mesh, places, reach)
         found = mesh.distances(places)

@@ -47,3 +47,8 @@ def test_what_is_at_a_steep_face_and_stands_on_nothing_pushes_off_from_it(
 def test_what_the_artist_says_counts() -> None:
     assert normal_at((0.0, 0.03, 1.5), asked=(0.0, 0.0, 2.0)) == pytest.approx(UP)
     assert normal_at((0.0, 0.3, 1.5), asked=(1.0, 0.0, 0.0)) == pytest.approx((1.0, 0.0, 0.0))
+
+
+def test_a_motion_without_contacts_pushes_against_nothing() -> None:
+    problem, character = MotionProblem(scene=(WALL,)), hop().performance.character
+    assert pushed_normals(problem, [], np.zeros((0, 3)), character, 0.0).shape == (0, 3)
