@@ -19,7 +19,7 @@ from ..data.recording import Recording, Skin
 from ..data.scene import SceneObject
 from ..numerics.interpolation import interpolate
 from ..scene.support import LEAST_HEIGHT, StandingGround, boxes_beneath, level, on_boxes
-from ..unseen.free_fall import clear_falls, unseen_support, without_falls
+from ..unseen.free_fall import clear_falls, falls_within, unseen_support, without_falls
 from .skin import skin_of_bodies
 from .soles import FootTracks, floor_height, foot_points
 
@@ -92,8 +92,9 @@ def find_contacts(performance: Performance, scene: Sequence[SceneObject] = ()) -
 
     Found in the whole take, and told as far as they are within the recording. Ground of the scene
     counts where the floor alone leaves support unseen: elsewhere the recording knows nothing of
-    what is put into its way. Where feet rest in mid-air, and then the body falls, only the rest is
-    unseen support. Places on ground that moves are as seen from it. What is known is not sought.
+    what is put into its way. Where something unseen carries the body for a while (what feet rest on
+    in mid-air, what hands hold) and it then clearly falls, only the former is unseen support.
+    Places on ground that moves are as seen from it. What is known is not sought.
     """
     take = performance.take
     points, floor_m = contact_points(take)
@@ -112,8 +113,9 @@ def find_contacts(performance: Performance, scene: Sequence[SceneObject] = ()) -
     if boxes:  # they would tell when the feet leave them, and so where the body flies
         flights = detect(ground=on_boxes(boxes, heights)).flights
         falls = clear_falls(take.times, take.com, flights)
-        unseen = (piece for gap in schedule.unseen for piece in without_falls(gap, falls))
-        schedule = replace(schedule, unseen=tuple(unseen))
+        schedule = _falling(schedule, falls)
+    alone = falls_within(take.times, take.com, schedule.unseen)
+    falls, schedule = (*falls, *alone), _falling(schedule, alone)
     first, last = take.recording.ends
     if known := [each for each in take.recording.known if each.first < last and each.last > first]:
         clock = Clock(take.recording.frames, take.times)
@@ -121,6 +123,12 @@ def find_contacts(performance: Performance, scene: Sequence[SceneObject] = ()) -
         carried = unseen_support(contacts, duration, take.times, take.com, falls=falls)
         schedule = ground.named(replace(schedule, contacts=numbered(contacts), unseen=carried))
     return snap(schedule, snap_tolerance(performance))
+
+
+def _falling(schedule: ContactSchedule, falls: Sequence[Interval]) -> ContactSchedule:
+    """The schedule, with flights where falls are in what is unseen."""
+    unseen = (piece for gap in schedule.unseen for piece in without_falls(gap, falls))
+    return replace(schedule, unseen=tuple(unseen))
 
 
 def snap_tolerance(performance: Performance) -> float:

@@ -3,10 +3,12 @@
 from collections.abc import Iterable, Sequence
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from ..arrays import BoolArray, FloatArray
-from ..data.constants import STANDARD_GRAVITY
+from ..data.constants import STANDARD_GRAVITY, UP
 from ..data.contacts import Contact, ContactSchedule, Interval, gaps
+from ..numerics.runs import runs
 
 MAX_FLIGHT = 1.2  # s; a rise of 1.8 m
 MIN_FALL_WINDOW = 0.05  # s; over which an acceleration can be estimated
@@ -16,6 +18,11 @@ FALL_RESIDUAL = 0.03  # m, rms; a centre of mass further from every parabola is 
 # m/s² and m, rms: by which recorded flights of 0.1 s and more are off gravity and a parabola; a
 # dance whose floor drifts has falls that are 2.2 and 0.006 off, and are none
 CLEAR_FALL, CLEAR_RESIDUAL = 2.0, 0.003
+# s, at least, of a fall that only the centre of mass tells: who bobs twice a second, and is without
+# weight at each crest, nearly falls for 0.23 s there; a flight of 0.25 s rises by 8 cm.
+SURE_FALL = 0.25
+FALL_WINDOW = 0.1  # s, over which an acceleration is told within it, and
+ROUGH_FALL = 4.0  # m/s², by which that may be off: by up to 4 flights' are, as limbs swing
 COM_NOISE = 0.001  # m, from frame to frame, of a recorded centre of mass
 STANDARD_ERRORS = 3.0  # of a fitted acceleration, before it speaks against a free fall
 
@@ -48,9 +55,52 @@ def without_falls(gap: Interval, falls: Sequence[Interval]) -> tuple[Interval, .
         start = gap.start if fall.start - gap.start < MIN_UNSEEN else fall.start
         end = gap.end if gap.end - fall.end < MIN_UNSEEN else fall.end
         if min(end, gap.end) - max(start, gap.start) >= MIN_UNSEEN:
-            cut.append((start - gap.start, end - gap.start))
-    left = gaps(cut, gap.end - gap.start)
-    return tuple(Interval(gap.start + piece.start, gap.start + piece.end) for piece in left)
+            cut.append((start, end))
+    return gaps([(0.0, gap.start), *cut], gap.end)
+
+
+def falls_within(
+    times: FloatArray, com: FloatArray, intervals: Iterable[Interval]
+) -> tuple[Interval, ...]:
+    """The parts of intervals, s, in which the body clearly falls all along, however it is carried
+    in the rest: who lets go of a bar. Apart from each other by what unseen support lasts.
+
+    times: (T,) s, evenly apart. com: (T, 3) m, world; neither up nor along the ground may anything
+    but gravity accelerate it.
+    """
+    half = max(2, round(0.5 * FALL_WINDOW * (len(times) - 1) / float(times[-1] - times[0])))
+    rough = _off_all_along(times, com, half) < ROUGH_FALL
+    found: list[Interval] = []
+    for whole in intervals:
+        inside = (times >= whole.start) & (times <= whole.end)
+        parts = (
+            Interval(float(times[max(a - half, 0)]), float(times[min(b + half, len(times) - 1)]))
+            for a, b in runs(rough & inside)
+        )
+        within = [Interval(max(p.start, whole.start), min(p.end, whole.end)) for p in parts]
+        lasting = [each for each in within if each.end - each.start >= SURE_FALL]
+        for fall in sorted(clear_falls(times, com, lasting), key=lambda f: f.start - f.end):
+            if all(_apart(fall, other) >= MIN_UNSEEN for other in found):
+                found.append(fall)
+    return tuple(sorted(found, key=lambda fall: fall.start))
+
+
+def _off_all_along(times: FloatArray, com: FloatArray, half: int) -> FloatArray:
+    """(T,) m/s², how far the acceleration is off gravity, by parabolas through `half` frames on
+    either side; infinite nearer to the ends."""
+    off, count = np.full(len(times), np.inf), 2 * half + 1
+    if len(times) < count:
+        return off
+    step = float(times[-1] - times[0]) / (len(times) - 1)
+    curvature = np.polyfit(step * np.arange(count), np.eye(count), 2)[0]
+    accelerations = 2.0 * sliding_window_view(com, count, axis=0) @ curvature
+    off[half:-half] = np.linalg.norm(accelerations + STANDARD_GRAVITY * UP, axis=1)
+    return off
+
+
+def _apart(one: Interval, other: Interval) -> float:
+    """S between two intervals; below 0 where they overlap."""
+    return max(one.start, other.start) - min(one.end, other.end)
 
 
 def falls_beside_unseen(schedule: ContactSchedule) -> tuple[Interval, ...]:
