@@ -237,6 +237,7 @@ def diagnose(
     near, torn = LEAP_WINDOW * recording.rate, _places(found, *GAPS)
     if leaps is not None and not _are_at(leaps, torn + (part.frames if part else ()), near):
         found.append(leaps)
+    ends = recording.ends
     kept = keep()
     scales, stance = settled(scales, standing, performed, touched, trusted)
     found += scales
@@ -248,7 +249,8 @@ def diagnose(
     if retimed is not None:
         found.append(retimed)
     found += stance.drifts
-    found += stance.footing if retimed is None else explained(stance.footing, retimed)
+    footing = _uncut(stance.footing, recording.ends, ends)
+    found += footing if retimed is None else explained(footing, retimed)
     feet = find_sliding_feet(stood(placed))
     if feet is not None and not any(finding.kind in WHOLE_BODY for finding in found):
         found.append(feet)
@@ -267,6 +269,16 @@ def _parted(found: list[Finding], frames: FloatArray, kept: Span) -> list[Findin
     first, last = np.searchsorted(frames, kept).tolist()
     cut = Repairs(trim=first, trim_end=len(frames) - 1 - last)
     return [replace(f, remedy=cut) if f.kind in PARTING else f for f in found]
+
+
+def _uncut(footing: Iterable[Finding], kept: Span, whole: Span) -> tuple[Finding, ...]:
+    """What is found of how a body stands in the frames that are kept, but that these begin or end
+    in the air where the clip does not."""
+    cut = {
+        FindingKind.BEGINS_IN_AIR: kept[0] > whole[0],
+        FindingKind.ENDS_IN_AIR: kept[1] < whole[1],
+    }
+    return tuple(finding for finding in footing if not cut.get(finding.kind, False))
 
 
 def _trusted(found: list[Finding], rate: float, carried: Spans) -> Trusted:
