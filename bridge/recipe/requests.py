@@ -114,6 +114,7 @@ dimensions = 16                 # or explained = 0.99 of the variance
 matrix = [[{ bone = "Thigh.L", weights = [1, 0, 0] }, { bone = "Thigh.R", weights = [1, 0, 0] }]]
 """
 
+from collections.abc import Collection
 from typing import Any
 
 from ...solver.data.requests import (
@@ -121,6 +122,7 @@ from ...solver.data.requests import (
     BodyChange,
     Clear,
     LimbChange,
+    PointRequest,
     Requests,
     Shape,
     Through,
@@ -180,6 +182,11 @@ def read_requests(top: Table) -> Requests:
     parts = {field: kind.read_all(top) for field, kind in BODY_RECORDS.items()}
     body = BodyChange(body.mass, body.gravity, **parts)
     return Requests(**records, body=body, solution=SOLUTION.read(top))
+
+
+def point_texts(points: Collection[PointRequest]) -> list[str]:
+    """The tables of points, such as those that are offered."""
+    return RECORDS["points"].text([*points])
 
 
 def request_texts(requests: Requests) -> list[str]:

@@ -8,6 +8,7 @@ from pathlib import Path
 from ...bridge.recipe.contacts import added_texts
 from ...bridge.recipe.object_texts import support_texts
 from ...bridge.recipe.problem import locate, read_recipe_text
+from ...bridge.recipe.requests import point_texts
 from ...solver.data.faults import BadRecipe, Fault, OffBalance, UnseenSupport
 from ..words.messages import recipe_place, sentence
 
@@ -30,5 +31,9 @@ def explained(fault: Fault, recipe: Path | None) -> str:
 def _remedies(fault: Fault) -> list[str]:
     """What carries the body, as a recipe has it, where that is told."""
     if isinstance(fault, UnseenSupport):
-        return [*support_texts(fault.boxes), *added_texts((*fault.hands, *fault.walls))]
-    return added_texts(fault.hands) if isinstance(fault, OffBalance) else []
+        boxes = support_texts(fault.boxes)
+        added = added_texts((*fault.hands, *fault.walls))
+        return [*boxes, *added, *point_texts(fault.holds)]
+    if isinstance(fault, OffBalance):
+        return [*added_texts(fault.hands), *point_texts(fault.holds)]
+    return []

@@ -8,6 +8,7 @@ from pathlib import Path
 from ...bridge.recipe.contacts import added_texts
 from ...bridge.recipe.object_texts import object_text, support_texts
 from ...bridge.recipe.recording import FILE, RECORDING, FileReading
+from ...bridge.recipe.requests import point_texts
 from ...bridge.recipe_syntax.toml_text import sections
 from ...solver.analysis.analyse import Analysis
 from ...solver.analysis.pins.pinned_places import backward_stances
@@ -43,14 +44,16 @@ def analysis_text(analysis: Analysis, origin: Origin) -> str:
 
 
 def _unseen(analysis: Analysis) -> list[str]:
-    """Where something unseen carries the body, and a box or hands that would."""
+    """Where something unseen carries the body, and a box, hands or what they hold, that would."""
     told = [sentence(each) for each in together(analysis.unseen)]
     unseen = [each for each in analysis.unseen if isinstance(each, UnseenSupport)]
     boxes = [box for each in unseen for box in each.boxes]
-    leaning = (e for e in analysis.unseen if isinstance(e, UnseenSupport | OffBalance))
-    added = dict.fromkeys(contact for each in leaning for contact in each.hands)
+    on_hands = [e for e in analysis.unseen if isinstance(e, UnseenSupport | OffBalance)]
+    added = dict.fromkeys(contact for each in on_hands for contact in each.hands)
     added |= dict.fromkeys(contact for each in unseen for contact in each.walls)
-    return ["", *told, *support_texts(boxes), *added_texts(added)] if told else []
+    holds = dict.fromkeys(point for each in on_hands for point in each.holds)
+    boxed = support_texts(boxes)
+    return ["", *told, *boxed, *added_texts(added), *point_texts(holds)] if told else []
 
 
 def _contact_lines(analysis: Analysis) -> list[str]:

@@ -75,8 +75,8 @@ SENTENCES = {
     "carries it that the recording does not show.",
     FindingKind.SKIDDING: "The feet that carry the body skid to another place {where}, as none "
     "does under load but on what moves.",
-    FindingKind.OFF_BALANCE: "The weight is beside the feet {where}, as of who sits, leans or is "
-    "on hands: something carries it that the recording does not show.",
+    FindingKind.OFF_BALANCE: "The weight is beside what touches {where}, as of who sits, leans, "
+    "hangs or is on hands: something carries it that the recording does not show.",
     FindingKind.BEGINS_IN_AIR: "The clip begins in the air.",
     FindingKind.ENDS_IN_AIR: "The clip ends in the air.",
 }

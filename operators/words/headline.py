@@ -42,13 +42,15 @@ _BESIDE_A_STAND = {  # by whether the blend leads in
     False: "End the range when it has left",
 }
 WHAT_CARRIES = (
-    "where hands do, let them touch (Add Contact); where a chair or a wall does, give what rests "
-    "on it a Point with Pushes Back; where feet stand on something, let it be ground (World)"
+    "where hands do, let them touch (Add Contact), or hold on (a Point with Pushes Back and Grip); "
+    "where a chair or a wall does, give what rests on it a Point with Pushes Back; where feet "
+    "stand on something, let it be ground (World)"
 )
 BESIDE_HANDS = (
     "hands touch there already, but the weight is {} beside hands and feet on average, where these "
-    "cannot carry it: correct the frames in which they touch, or mend the recording; where "
-    "something else carries, give what rests on it a Point with Pushes Back"
+    "cannot carry it: correct the frames in which they touch, or mend the recording; where the "
+    "body hangs from them, which contacts cannot hold, give them a Point with Pushes Back and Grip "
+    "in place of that; where something else carries, give what rests on it a Point with Pushes Back"
 )
 # What may be done about keys that do not show what was solved.
 SAME_SCALE = (

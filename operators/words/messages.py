@@ -101,10 +101,10 @@ def _variant(fault: Fault) -> int:
         case faults.UnseenSupport():
             carrying = fault.leaning, bool(fault.boxes), bool(fault.hands), fault.rate is not None
             mistaken = fault.exchanged, fault.skidding, fault.lying, fault.resting
-            every = (True, *carrying, *mistaken, bool(fault.walls))
-            return max(i for i, each in enumerate(every) if each)
+            return _last_of(True, *carrying, *mistaken, bool(fault.walls), bool(fault.holds))
         case faults.OffBalance():
-            return 2 if fault.hands else bool(fault.resting)
+            on_hands = bool(fault.hands), bool(fault.touching), bool(fault.holds)
+            return _last_of(True, bool(fault.resting), *on_hands)
         case faults.UnseenSupports():
             return fault.leaning
         case faults.StandsIn():
@@ -118,6 +118,11 @@ def _variant(fault: Fault) -> int:
         case faults.RateChanged():
             return fault.while_solving
     raise TypeError(f"which words are for {type(fault).__name__}?")
+
+
+def _last_of(*told: bool) -> int:
+    """Index of the last that is true."""
+    return max(i for i, each in enumerate(told) if each)
 
 
 def is_in_its_way(fault: faults.NoSolution) -> bool:
@@ -152,6 +157,11 @@ class _Formatter(Formatter):
             case "contacts":
                 return ", ".join(
                     f"{each.point} {each.start_frame:g} to {each.end_frame:g}" for each in value
+                )
+            case "held":
+                return ", ".join(
+                    f"{each.bone} {each.when.frames[0]:g} to {each.when.frames[1]:g}"
+                    for each in value
                 )
             case "numbers":
                 return ", ".join(f"{number:g}" for number in value)

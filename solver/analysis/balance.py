@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
+from ..body.anatomy import Part
 from ..body.dynamics import MomentFunction
 from ..data.constants import STANDARD_GRAVITY, UP
 from ..data.contacts import ContactSchedule, Interval, PointKind
@@ -80,7 +81,7 @@ def _zero_moment_point(
     movement, but for a moment about the vertical; and whether that force is large enough to tell.
     """
     times, take, character = performance.times, performance.take, performance.character
-    width = max(SMOOTHING, SMOOTHING_FRAMES / performance.recording.rate)
+    width = smoothing(performance)
     speeds, turning = (derivative(take.times, take.angles, times, width, n) for n in (1, 2))
     moment = MomentFunction(character).value(performance.angles, speeds, turning)
     moment *= STANDARD_GRAVITY  # by mass, as the force is
@@ -114,23 +115,31 @@ def low_palms(performance: Performance) -> dict[str, BoolArray]:
 
 
 def pelvis_at_rest(performance: Performance) -> tuple[BoolArray, BoolArray]:
-    """(T,) each, whether the pelvis is still, and whether it is as near to the floor as where the
-    body sits or lies on it."""
+    """(T,) each, whether the pelvis rests, and whether it is as near to the floor as where the body
+    sits or lies on it. Above that it does not rest that is higher than the arms' shoulders."""
     track, (_, floor_m) = performance.centres[:, 0], contact_points(performance)
-    low = track[:, 2] - floor_m < LEANING * performance.character.height
-    return _speed(performance, track) < STILL, np.asarray(low)
+    arms = [i for i, b in enumerate(performance.character.bodies) if b.part is Part.UPPER_ARM]
+    low = np.asarray(track[:, 2] - floor_m < LEANING * performance.character.height)
+    upright = track[:, 2] < performance.centres[:, arms, 2].mean(axis=1)
+    return (_speed(performance, track) < STILL) & (low | upright), low
 
 
-def lasting(performance: Performance, mask: BoolArray, gap: Interval) -> Iterator[Interval]:
-    """The parts of a gap in which something (T,) is true for as long as who surely leans does."""
+def lasting(
+    performance: Performance, mask: BoolArray, gap: Interval, lasts: float
+) -> Iterator[Interval]:
+    """The parts of a gap in which something (T,) is true for so long, s."""
     times = performance.times
     for first, last in runs(mask & (times >= gap.start) & (times <= gap.end)):
-        if times[last] - times[first] >= SURELY_LASTS:
+        if times[last] - times[first] >= lasts:
             yield Interval(float(times[first]), float(times[last]))
+
+
+def smoothing(performance: Performance) -> float:
+    """S, standard deviation, with which accelerations and speeds are told."""
+    return max(SMOOTHING, SMOOTHING_FRAMES / performance.recording.rate)
 
 
 def _speed(performance: Performance, track: FloatArray) -> FloatArray:
     """(T,) m/s, of a track (T, n) m."""
-    width = max(SMOOTHING, SMOOTHING_FRAMES / performance.recording.rate)
-    speeds = derivative(performance.times, track, performance.times, width, 1)
+    speeds = derivative(performance.times, track, performance.times, smoothing(performance), 1)
     return np.asarray(np.linalg.norm(speeds, axis=1))

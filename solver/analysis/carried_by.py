@@ -7,29 +7,35 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import BoolArray
+from ..body.anatomy import Part, Side
 from ..data.contacts import ContactSchedule, Interval, PointKind
 from ..data.faults import OffBalance, Treadmill, UnseenSupport
 from ..data.problem import AddedContact
 from ..data.recording import Recording
+from ..data.requests import PointRequest, When
 from ..data.scene import SupportBox
 from ..numerics.runs import runs
 from ..scene.belt import belt_speed
 from ..scene.fall_rate import fitting_rate, is_pulled_down
 from ..scene.support import boxes_beneath, steps_on_walls
 from ..unseen.held import is_held
+from ..unseen.held_hands import HandTracks, holds
 from .balance import (
+    LASTS,
     SURELY_LASTS,
     lasting,
     low_palms,
     off_balance,
     palms_at_rest,
     pelvis_at_rest,
+    smoothing,
     touches_during,
 )
 from .performance import Performance, contact_points, find_contacts, leans, low_feet
 
 MOST = 2.0 / 3.0  # of the time in the air, in which the body falls at another rate than the scene's
 LEANING_SHARE = 0.2  # of a gap, in which hands or knees on the floor may be what carries the body
+HELD_SHARE = 0.5  # of a gap, in which hands that hold on may be what carries the body
 LOW_SHARE = 0.9  # of a gap, in which a foot or hand on the floor touches all the same
 SKIDS = 0.03  # m, to either side, of a foot on the floor; one that stands rolls and turns by less
 
@@ -60,6 +66,10 @@ def unseen_carriers(
         hands: tuple[AddedContact, ...] = ()
         walls: tuple[AddedContact, ...] = ()
         leaning = _leans(performance, gap, floor_m)
+        held = () if leaning else _held(performance, schedule, gap)
+        if held:
+            yield UnseenSupport(first, last, holds=held)
+            continue
         if leaning:
             hands = _hands(performance, schedule, gap, low_palms(performance))
         elif rate is None:
@@ -77,8 +87,9 @@ def unseen_carriers(
 
 def weight_beside(performance: Performance, schedule: ContactSchedule) -> Iterator[OffBalance]:
     """Where the weight is beside what touches for so long that it is no fault of the capture: on
-    hands, with their contacts, and else, with when the pelvis rests. Who sits on the floor has
-    hands on it that carry little."""
+    hands, with their contacts; of who hangs, with what hands hold; where more than feet touches,
+    with what does; and else, with when the pelvis rests. Who sits on the floor has hands on it that
+    carry little."""
     found = off_balance(performance, schedule, SURELY_LASTS)
     palms = palms_at_rest(performance)
     still, low = pelvis_at_rest(performance)
@@ -92,9 +103,86 @@ def weight_beside(performance: Performance, schedule: ContactSchedule) -> Iterat
     if leaning:
         contacts = dict.fromkeys(contact for gap in leaning for contact in added[gap])
         yield OffBalance(_spans(performance, leaning), tuple(contacts))
-    if others:
-        rests = [part for gap in others for part in lasting(performance, still, gap)]
-        yield OffBalance(_spans(performance, others), resting=_spans(performance, rests))
+    held = {gap: _held(performance, schedule, gap) for gap in others}
+    if hanging := [gap for gap in others if held[gap]]:
+        points = dict.fromkeys(point for gap in hanging for point in held[gap])
+        touching = _touching(performance, schedule, hanging)
+        yield OffBalance(_spans(performance, hanging), touching=touching, holds=tuple(points))
+    beyond, rest = _beyond_feet(performance, schedule), [gap for gap in others if not held[gap]]
+    more, feet = (
+        [part for gap in rest for part in lasting(performance, mask, gap, LASTS)]
+        for mask in (beyond, ~beyond)
+    )
+    if more:
+        touching = _touching(performance, schedule, more)
+        yield OffBalance(_spans(performance, more), touching=touching)
+    if feet:
+        rests = [part for gap in feet for part in lasting(performance, still, gap, SURELY_LASTS)]
+        yield OffBalance(_spans(performance, feet), resting=_spans(performance, rests))
+
+
+def _beyond_feet(performance: Performance, schedule: ContactSchedule) -> BoolArray:
+    """(T,) whether something else touches than feet, which may do so beside it."""
+    points = {c.point for c in schedule.contacts if not c.touch.is_of_foot}
+    touches = [touches_during(performance.times, schedule, point) for point in points]
+    return np.any(touches, axis=0) if touches else np.zeros(len(performance.times), dtype=np.bool_)
+
+
+def _touching(
+    performance: Performance, schedule: ContactSchedule, intervals: Sequence[Interval]
+) -> tuple[str, ...]:
+    """The limbs that touch for a good part of some intervals."""
+    limbs = {c.point: c.touch.limb for c in schedule.contacts}
+    during = np.any([_inside(performance, each) for each in intervals], axis=0)
+    lasting = (
+        limb
+        for point, limb in limbs.items()
+        if touches_during(performance.times, schedule, point)[during].mean() > LEANING_SHARE
+    )
+    return tuple(dict.fromkeys(lasting))
+
+
+def _held(
+    performance: Performance, schedule: ContactSchedule, gap: Interval
+) -> tuple[PointRequest, ...]:
+    """Points for the hands from which the body hangs in most of a gap, as far as it does not fly;
+    none where they hold on for less."""
+    times, frames = performance.times, performance.recording.frames
+    aloft = np.zeros(len(times), dtype=np.bool_)
+    for flight in schedule.flights:
+        aloft |= (times > flight.start) & (times < flight.end)
+    inside, carried = _inside(performance, gap), np.zeros_like(aloft)
+    found = []
+    for side in (Side.LEFT, Side.RIGHT):
+        body, tracks = performance.character.body(Part.HAND, side), _hand(performance, side)
+        if body is None or tracks is None:
+            continue
+        for hold in holds(times, tracks, smoothing(performance)):
+            on = np.arange(hold.first, hold.last + 1)[~aloft[hold.first : hold.last + 1]]
+            if len(on) > 1 and inside[on].any():
+                carried[on] = True
+                found.append(
+                    PointRequest(
+                        f"{side.value.capitalize()} hand holds on",
+                        performance.character.bodies[body].bone,
+                        When(frames=(float(frames[on[0]]), float(frames[on[-1]]))),
+                        offset=(0.0, 0.0, 0.0) if hold.by_joint else None,
+                        environment=True,
+                        grip=True,
+                    )
+                )
+    return tuple(found) if carried[inside].mean() >= HELD_SHARE else ()
+
+
+def _hand(performance: Performance, side: Side) -> HandTracks | None:
+    """None where the figure has no such hand."""
+    character, centres = performance.character, performance.centres
+    hand, head = character.body(Part.HAND, side), character.body(Part.HEAD)
+    if hand is None or head is None:
+        return None
+    middle = performance.rotations[:, hand] @ (0.5 * character.bodies[hand].tip)
+    joint = centres[:, hand]
+    return HandTracks(joint, joint + middle, centres[:, head], centres[:, 0])
 
 
 def _spans(

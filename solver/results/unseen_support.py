@@ -9,8 +9,8 @@ from ..analysis.balance import LOADED, SURELY_LASTS, outside
 from ..arrays import BoolArray, FloatArray
 from ..data.constants import STANDARD_GRAVITY, UP
 from ..data.contacts import ContactSchedule, Interval
-from ..data.faults import CarriedBy, FitNeedsSupport, OffBalance
-from ..data.problem import AddedContact, MotionProblem, Unseen
+from ..data.faults import CarriedBy, FitNeedsSupport, OffBalance, UnseenSupport
+from ..data.problem import MotionProblem, Unseen
 from ..data.recording import Recording
 from ..data.reports.constraints import (
     CARRIES,
@@ -30,7 +30,7 @@ from .flight_summary import scene_frame
 
 SAMPLE_RATE = 500.0  # Hz
 LEAST_FRAMES = 4  # that tell an acceleration
-MOST = 0.5  # of an interval, in which hands touch that carry in it
+MOST = 0.5  # of an interval, in which hands, or an artist's points, touch that carry in it
 APART = 0.1  # s; what is nearer is one interval
 
 Span = tuple[float, float]  # first and last frame
@@ -128,8 +128,9 @@ def _joined(times: FloatArray, mask: BoolArray) -> list[tuple[int, int]]:
 def hints_left(
     told: Sequence[CarriedBy], result: Report, schedule: ContactSchedule, recording: Recording
 ) -> list[CarriedBy]:
-    """What an analysis told of a recording, of weight beside the feet no more than where a result
-    still has something unseen carry it, and no point of the artist's.
+    """What an analysis told of a recording, of weight beside what touches no more than where a
+    result still has something unseen carry it, and no point of the artist's, and nothing of hands
+    that hold on where such points do.
 
     schedule: the result's. Frames stay the recording's, by which points and contacts are asked for.
     """
@@ -140,9 +141,8 @@ def hints_left(
         for c in schedule.contacts
         if c.asked_for
     ]
-    left = _during(frames, _as_recorded(carried, result)) & ~_during(
-        frames, _as_recorded(points, result)
-    )
+    asked = _during(frames, _as_recorded(points, result))
+    left = _during(frames, _as_recorded(carried, result)) & ~asked
 
     def cut(spans: Sequence[Span]) -> tuple[Span, ...]:
         some = runs(_during(frames, spans) & left)
@@ -151,15 +151,21 @@ def hints_left(
 
     def kept(hint: OffBalance) -> OffBalance:
         spans = cut(hint.spans)
-        hands = (h for h in hint.hands if any(_overlap(h, span) for span in spans))
-        return replace(hint, spans=spans, resting=cut(hint.resting), hands=tuple(hands))
+        hands = tuple(h for h in hint.hands if _overlap((h.start_frame, h.end_frame), spans))
+        holds = tuple(h for h in hint.holds if _overlap(h.when.frames, spans))
+        return replace(hint, spans=spans, resting=cut(hint.resting), hands=hands, holds=holds)
 
-    hints = (kept(each) if isinstance(each, OffBalance) else each for each in told)
-    return [hint for hint in hints if not isinstance(hint, OffBalance) or hint.spans]
+    def is_left(hint: CarriedBy) -> bool:
+        if isinstance(hint, UnseenSupport) and hint.holds:
+            return bool(asked[_during(frames, [(hint.first, hint.last)])].mean() <= MOST)
+        return not isinstance(hint, OffBalance) or bool(hint.spans)
+
+    return [*filter(is_left, (kept(e) if isinstance(e, OffBalance) else e for e in told))]
 
 
-def _overlap(contact: AddedContact, span: Span) -> bool:
-    return contact.start_frame < span[1] and contact.end_frame > span[0]
+def _overlap(frames: Span | None, spans: Sequence[Span]) -> bool:
+    """Whether frames, from first to last, None for all, share any with one of some spans."""
+    return frames is None or any(frames[0] < span[1] and frames[1] > span[0] for span in spans)
 
 
 def _as_recorded(spans: Sequence[Span], result: Report) -> list[Span]:

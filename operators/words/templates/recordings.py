@@ -142,6 +142,10 @@ RECORDINGS: dict[type[Fault], str | tuple[str, ...]] = {
         "({walls:contacts}): Add Contact, the + beside the contacts of a stance, or an "
         "[[add_contact]] in a recipe; and list the wall in the panel World, or as an [[object]], "
         "which they then push off from.",
+        "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
+        "fall, for hands hold on to something above, as of who hangs. To have that carry it in the "
+        "result, give each a Point with Pushes Back and Grip ({holds:held}), or a [[point]] with "
+        "“environment” and “grip” in a recipe.",
     ),
     faults.ScaledStrip: "The body falls as gravity has it at {rate:.5g} frames a second, but the "
     "scene has {scene_rate:.5g} (frames {first:g} to {last:g}), and the NLA strip “{strip}” plays "
@@ -171,6 +175,13 @@ RECORDINGS: dict[type[Fault], str | tuple[str, ...]] = {
         "contacts are not found, so something unseen carries it in the fit. Let them touch "
         "({hands:contacts}): Add Contact, the + beside the contacts of a stance, or an "
         "[[add_contact]] in a recipe.",
+        "In frames {spans:spans} the weight is beside what touches ({touching:names}), so "
+        "something unseen carries it in the fit. Correct the frames in which that touches, or give "
+        "what else rests on something a Point with Pushes Back.",
+        "In frames {spans:spans} the weight is beside what touches ({touching:names}), for hands "
+        "hold on to something above, as of who hangs, and contacts only push. Give each hand a "
+        "Point with Pushes Back and Grip ({holds:held}), or a [[point]] with “environment” and "
+        "“grip” in a recipe, instead of a contact.",
     ),
     faults.FitNeedsSupport: "No motion comes near the recording unless something unseen carries "
     "the body in frames {spans:spans}, which the recipe refuses; correct the frames of the "

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from ..problem import AddedContact
+from ..requests import PointRequest
 from ..scene import SupportBox
 from .base import Fault
 
@@ -266,7 +267,8 @@ class UnseenSupport(Fault):
     """Nothing touches, yet the body does not fall: something unrecorded carries it (frames).
 
     boxes: what would, where feet rest above the floor. leaning: whether another part of the body is
-    on the floor. hands: their contacts, where that is hands. rate: frames a second at which the
+    on the floor. hands: their contacts, where that is hands. holds: of hands that hold on to
+    something above. rate: frames a second at which the
     body would fall as gravity has it, where the scene's, scene_rate, is another. exchanged: whether
     the legs are there, so that none of these is meant. skidding: whether feet are on the ground,
     and go from place to place. resting: whether they stay there, without a contact. lying: whether
@@ -286,6 +288,7 @@ class UnseenSupport(Fault):
     lying: bool = False
     resting: bool = False
     walls: tuple[AddedContact, ...] = ()
+    holds: tuple[PointRequest, ...] = ()
 
 
 @dataclass
@@ -313,13 +316,17 @@ class UnseenSupports(Fault):
 
 @dataclass
 class OffBalance(Fault):
-    """Feet touch, but the weight is beside them in spans (first, last frame), as of who sits or
-    leans: a hint, as the fit tells what that takes. hands: the contacts of those on the floor, that
-    would carry it. resting: the spans within these in which the pelvis is still."""
+    """What touches has the weight beside it in spans (first, last frame), as of who sits or leans:
+    a hint, as the fit tells what that takes. hands: the contacts of those on the floor, that would
+    carry it. resting: the spans within these in which the pelvis is still. touching: the limbs that
+    touch ("Right hand"), where these are not the feet alone. holds: of hands that hold on to
+    something above."""
 
     spans: tuple[tuple[float, float], ...]
     hands: tuple[AddedContact, ...] = ()
     resting: tuple[tuple[float, float], ...] = ()
+    touching: tuple[str, ...] = ()
+    holds: tuple[PointRequest, ...] = ()
 
 
 @dataclass

@@ -33,7 +33,8 @@ def with_cause(told: Told, recording: Recording, chosen: Mapping[str, str]) -> T
 
     def explained(each: CarriedBy) -> CarriedBy:
         if isinstance(each, UnseenSupport) and legs.touches(each.first, each.last):
-            return replace(each, boxes=(), rate=None, exchanged=True, skidding=False, resting=False)
+            alone = replace(each, boxes=(), rate=None, skidding=False, resting=False, holds=())
+            return replace(alone, exchanged=True)
         return each
 
     return tuple(map(explained, told))

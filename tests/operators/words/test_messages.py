@@ -42,6 +42,7 @@ from hangtime.solver.data.faults import (
     UnseenSupport,
 )
 from hangtime.solver.data.problem import AddedContact, MotionProblem
+from hangtime.solver.data.requests import PointRequest, When
 from hangtime.solver.data.row_kinds import RowKind, Violation
 from hangtime.solver.data.scene import SupportBox
 from hangtime.solver.data.status import Status
@@ -77,6 +78,8 @@ def filled(hint: object) -> object:
         return (Violation("Landing: Left heel 2", RowKind.PIN, 12.0),)
     if "AddedContact" in text:
         return (AddedContact("Left hand", 3.0, 9.0),)
+    if "PointRequest" in text:
+        return (PointRequest("Bar", "Hand", When(frames=(3.0, 9.0))),)
     if "SupportBox" in text:
         return (SupportBox((0.4, 0.3, 0.31), (0.0, 0.0, 0.0), 0.0),)
     if text.startswith("tuple[tuple[float"):

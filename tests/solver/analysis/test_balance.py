@@ -8,12 +8,13 @@ from hangtime.operators.headless.explained import explained
 from hangtime.operators.words.doctor_text import finding_sentence
 from hangtime.operators.words.messages import sentence
 from hangtime.solver.analysis.analyse import analyse
-from hangtime.solver.analysis.balance import SURELY_LASTS, off_balance
+from hangtime.solver.analysis.balance import SURELY_LASTS, off_balance, pelvis_at_rest
 from hangtime.solver.analysis.performance import contact_points
 from hangtime.solver.data.faults import OffBalance
-from hangtime.solver.data.problem import MotionProblem, Unseen
+from hangtime.solver.data.problem import AddedContact, MotionProblem, Unseen
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.examination.diagnose import diagnose
+from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.tests.helpers.clips import JUMP, load_recording
 from hangtime.tests.helpers.leaned import leaned
 
@@ -94,9 +95,38 @@ def test_hands_in_mid_air_or_that_slide_carry_nothing(height: float, speed: floa
     assert told.hands == ()
 
 
+def test_a_hand_that_touches_is_named_and_no_chair_then() -> None:
+    added = AddedContact("Left hand", 1.0, 60.0)
+    told = analyse(leaned(20.0), MotionProblem(added=(added,))).unseen
+    assert all(isinstance(each, OffBalance) for each in told)
+    on_hand, on_feet = told
+    assert isinstance(on_hand, OffBalance)
+    assert on_hand.spans[0] == pytest.approx((1.0, 60.0), abs=1.0)
+    assert "Left hand" in on_hand.touching
+    assert "is beside what touches (" in sentence(on_hand)
+    assert "sits" not in sentence(on_hand)
+    assert "the weight is beside the feet" in sentence(on_feet)
+
+
+def test_a_pelvis_above_the_shoulders_does_not_rest() -> None:
+    """As in a handstand, however still it is; whoever lies on the floor may have it higher."""
+    recording = still(leaned(0.0))
+    heads, rotations = recording.heads.copy(), recording.rotations.copy()
+    turn, later = axis_rotation(0, np.pi), slice(45, None)
+    heads[later] = heads[later] @ turn.T + [0.0, 0.0, 2.0]
+    rotations[later] = turn @ rotations[later]
+    turned = replace(recording, heads=heads, rotations=rotations)
+    at_rest, low = pelvis_at_rest(analyse(turned, MotionProblem()).performance)
+    assert at_rest[:10].all()  # later ones are smoothed with the turn
+    assert not at_rest[later].any()
+    assert not low.any()
+
+
 def test_the_doctor_notes_who_leans() -> None:
     notes = [finding_sentence(each) for each in diagnose(leaned(20.0)).findings]
-    assert any(note.startswith("The weight is beside the feet in frames 1 to 90") for note in notes)
+    assert any(
+        note.startswith("The weight is beside what touches in frames 1 to 90") for note in notes
+    )
 
 
 def test_who_leans_a_little_is_not() -> None:

@@ -8,6 +8,7 @@ from hangtime.solver.data.problem import AddedContact, MotionProblem
 from hangtime.solver.data.reports.constraints import UnseenSupportReport
 from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.data.reports.report import Report
+from hangtime.solver.data.requests import PointRequest, When
 from hangtime.solver.results.report import report
 from hangtime.solver.results.unseen_support import hints_left
 from hangtime.solver.stages.implicit import adapt
@@ -47,6 +48,16 @@ def test_a_hint_is_told_where_something_unseen_carries() -> None:
     assert isinstance(left, OffBalance)
     assert left.spans == left.resting == ((half, LAST),)
     assert left.hands == hands[:1]
+
+
+def test_hands_that_hold_on_are_not_told_where_points_of_theirs_do() -> None:
+    touch = SCHEDULE.contacts[0]
+    grip = replace(touch, name="Bar", point="Bar", start=0.0, end=SCHEDULE.duration)
+    hangs = replace(SCHEDULE, contacts=(*SCHEDULE.contacts, grip))
+    point = PointRequest("Bar", "Hand", When(frames=(FIRST, LAST)), environment=True, grip=True)
+    told = UnseenSupport(FIRST, LAST, holds=(point,))
+    assert hints_left([told], carried(FIRST, LAST), SCHEDULE, RECORDING) == [told]
+    assert hints_left([told], carried(FIRST, LAST), hangs, RECORDING) == []
 
 
 def test_a_hint_is_not_told_where_a_point_pushes_back() -> None:

@@ -1,0 +1,95 @@
+"""Who hangs is told that hands hold on to something, and what carries him in the result."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hangtime.bridge.recipe.problem import parse_recipe
+from hangtime.bridge.recipe.requests import point_texts
+from hangtime.operators.headless.explained import explained
+from hangtime.operators.words.analysis_text import analysis_text
+from hangtime.operators.words.messages import sentence
+from hangtime.solver.analysis.analyse import analyse
+from hangtime.solver.data.faults import OffBalance, UnseenSupport
+from hangtime.solver.data.problem import AddedContact, MotionProblem
+from hangtime.solver.data.reports.recording import Origin
+from hangtime.solver.unseen.held_hands import HandTracks, holds
+from hangtime.tests.helpers.hung import RELEASE, hung
+
+TIMES = np.linspace(0.0, 2.0, 121)
+WIDTH = 0.06  # s
+HANDS = ["LeftHand", "RightHand"]
+
+
+def hand(height: float, head: float, pelvis: float, speed: float = 0.0) -> HandTracks:
+    """Which is at a height, m, for a second, and then goes; speed: m/s, before."""
+    joint, above, below = (
+        np.outer(np.ones_like(TIMES), [0.0, 0.0, z]) for z in (height, head, pelvis)
+    )
+    joint[:, 0] = speed * TIMES + 3.0 * np.maximum(TIMES - 1.0, 0.0)
+    return HandTracks(joint, joint, above, below)
+
+
+def test_who_hangs_holds_on_until_he_lets_go() -> None:
+    (grasp,) = holds(TIMES, hand(2.4, head=2.0, pelvis=1.3), WIDTH)
+    assert (grasp.first, TIMES[grasp.last]) == (0, pytest.approx(1.0, abs=0.04))
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        hand(0.9, head=1.5, pelvis=0.9),  # who sits with the hands on the knees
+        hand(1.2, head=0.3, pelvis=0.8),  # who is upside down
+        hand(2.4, head=2.0, pelvis=1.3, speed=0.5),
+    ],
+)
+def test_hands_below_the_head_or_above_an_inverted_body_or_on_their_way_hold_nothing(
+    other: HandTracks,
+) -> None:
+    assert holds(TIMES, other, WIDTH) == []
+
+
+def test_who_hangs_is_told_points_that_carry() -> None:
+    recording = hung()
+    analysis = analyse(recording, MotionProblem())
+    (told,) = analysis.unseen
+    assert isinstance(told, UnseenSupport)
+    assert [point.bone for point in told.holds] == HANDS
+    for point in told.holds:
+        assert point.environment
+        assert point.grip
+        assert point.when.frames is not None
+        first, last = point.when.frames
+        assert first == recording.frames[0]
+        assert last == pytest.approx(recording.frames[0] + RELEASE * recording.rate, abs=1.0)
+    said = explained(told, None)
+    assert "hands hold on to something above" in said
+    assert "Pushes Back and Grip (LeftHand 1 to" in said
+    texts = point_texts(told.holds)
+    assert parse_recipe("\n".join(texts)).problem.requests.points == told.holds
+    assert all(text.strip() in said for text in texts)
+    assert all(text in analysis_text(analysis, Origin("hung")) for text in texts)
+
+
+def test_hands_that_go_with_the_body_hold_nothing() -> None:
+    (told,) = analyse(hung(high_hands=False), MotionProblem()).unseen
+    assert isinstance(told, UnseenSupport)
+    assert told.holds == ()
+
+
+def test_of_contacts_from_which_a_body_hangs_askew_it_is_told_that_they_only_push() -> None:
+    recording = hung()
+    heads = recording.heads.copy()
+    heads[:, [recording.index(hand) for hand in HANDS], 1] -= 1.5  # as a gust would have it
+    recording = replace(recording, heads=heads)
+    last = recording.frames[0] + RELEASE * recording.rate
+    added = tuple(
+        AddedContact(f"{side} hand", recording.frames[0], last) for side in ("Left", "Right")
+    )
+    (told,) = analyse(recording, MotionProblem(added=added)).unseen
+    assert isinstance(told, OffBalance)
+    assert told.touching == ("Left hand", "Right hand")
+    assert [point.bone for point in told.holds] == HANDS
+    said = sentence(told)
+    assert "beside what touches (Left hand, Right hand)" in said
+    assert "contacts only push. Give each hand a Point with Pushes Back and Grip" in said
