@@ -261,8 +261,7 @@ def renewed(armature: bpy.types.Object, move: StanceMove, **options: object) -> 
     action, made = complete(write_adapted_incrementally(armature, motion))
     assert made is not None
     no_contacts = ContactSchedule((), 1.0, 0.0)
-    bones = rigs.MOVING, made.companions.bones
-    complete(renewal.put_on(action, *bones, made.time, no_contacts, 24.0))
+    complete(renewal.put_on(action, made.owned, made.time, no_contacts, 24.0))
     if motion.options.written_as is WrittenAs.COMBINE:
         combine(armature, action, motion.options.after)
     note_made(armature, action, made.span, made.time.later)

@@ -154,7 +154,8 @@ def test_an_armature_that_is_moved_while_it_is_analysed_is_elsewhere_than_its_co
     stood = analysed.matrix_world.copy()
     monkeypatch.setattr(analyze, "_analysed", meanwhile)
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
-    assert changed_since_analysis(analysed) == ("its place",)
+    now = read_recorded(analysed, 1.0, 20.0)
+    assert changed_since_analysis(analysed, now) == ("its place",)
     assert present(kept(analysed)).stood == stood
     with pytest.raises(RuntimeError, match=r"changed since the analysis \(its place\)"):
         bpy.ops.hangtime.fit()

@@ -239,7 +239,7 @@ def test_a_failed_solve_names_what_is_wrong_with_the_recording_and_what_mends_it
 def test_what_goes_wrong_in_looking_for_a_cause_hides_no_fault(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    def broken(*_: object) -> None:
+    def broken(*_: object, **__: object) -> None:
         raise ValueError
 
     monkeypatch.setattr(suspects, "diagnose", broken)
