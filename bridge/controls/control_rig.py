@@ -20,6 +20,7 @@ from .choice import Group, all_responses, moved_by_controls, used_groups
 from .driven import candidates
 from .followed import FAINT, influences_over, rig_digest, telling_frames
 from .inverse import Inverse, Inverted
+from .leading import movers
 from .needed import Effects, effects_at
 from .posing import Posing
 from .responses import Freedom, Responses
@@ -34,7 +35,8 @@ _Tried = tuple[int, tuple[str, ...], str, bytes, bytes]
 class ControlRig:
     """The controls that pose bodies. used: what of each; carriers: those that no other moves.
 
-    effects: of the degrees of freedom, at each of the frames where they were tried.
+    effects: of the degrees of freedom, at each of the frames where they were tried. moving: (C,)
+    which controls move any body, by state of the switches, as bytes of which constraints act.
     """
 
     armature: bpy.types.Object
@@ -44,6 +46,7 @@ class ControlRig:
     used: dict[str, set[Freedom]]
     carriers: tuple[str, ...]
     effects: tuple[Effects, ...]
+    moving: dict[bytes, BoolArray]
 
     @property
     def posing(self) -> Posing:
@@ -85,8 +88,8 @@ def found_controls(
     remembered = _remembered()
     if key in remembered:
         return replace(remembered[key], armature=armature)
-    at = telling_frames(frames, acts > FAINT)
-    found = yield from _tried(armature, bodies, at, showing)
+    at = telling_frames(acts > FAINT)
+    found = yield from _tried(armature, bodies, frames[at], acts[at] > FAINT, showing)
     with showing():
         unchanged = rig_digest(armature) == made
     if unchanged:
@@ -106,9 +109,11 @@ def _tried(
     armature: bpy.types.Object,
     bodies: tuple[str, ...],
     at: FloatArray,
+    states: BoolArray,
     showing: Callable[[], AbstractContextManager[object]],
 ) -> Incremental[ControlRig]:
-    """The controls of bodies, tried at frames (L,). Raises NoControls."""
+    """The controls of bodies, tried at frames (L,). states: (L, N), which constraints act there.
+    Raises NoControls."""
     names = candidates(armature, bodies)
     if not names:
         raise NoControls(bodies)
@@ -129,7 +134,7 @@ def _tried(
     groups = used_groups(posing, [(look.responses, look.effects) for look in looks])
     if not groups:  # they move something, but nothing that hangs together
         raise NoControls(bodies)
-    return _rig(posing, looks, groups)
+    return _rig(posing, looks, groups, states)
 
 
 @dataclass(frozen=True)
@@ -166,8 +171,9 @@ def _looks(
     return looks
 
 
-def _rig(posing: Posing, looks: list[_Look], groups: list[Group]) -> ControlRig:
-    """The rig of those groups of all controls, as it is at the middle one of the looks."""
+def _rig(posing: Posing, looks: list[_Look], groups: list[Group], states: BoolArray) -> ControlRig:
+    """The rig of those groups of all controls, as it is at the middle one of the looks. states:
+    (L, N), which constraints act there."""
     kept = sorted({group.control for group in groups})
     dofs = sorted(d for group in groups for d in group.dofs)
     parts = [look.responses.part(dofs, kept) for look in looks]
@@ -183,7 +189,12 @@ def _rig(posing: Posing, looks: list[_Look], groups: list[Group]) -> ControlRig:
     free = [name for c, name in enumerate(controls) if not middle.moved[:, c].any()]
     carriers = tuple(name for name in free if Freedom.SHIFT in used[name])
     effects = tuple(look.effects.part(dofs) for look in looks)
-    return ControlRig(posing.armature, controls, posing.bodies, middle, used, carriers, effects)
+    moving: dict[bytes, BoolArray] = {}
+    for part, state in zip(parts, states, strict=True):
+        key = state.tobytes()
+        moving[key] = moving.get(key, False) | movers(part)
+    about = posing.armature, controls, posing.bodies
+    return ControlRig(*about, middle, used, carriers, effects, moving)
 
 
 def control_poses(
@@ -196,7 +207,7 @@ def control_poses(
     `showing` lets it perform them."""
     posing = rig.posing
     targets = targets_of(rig.armature, poses, track)
-    inverse = Inverse(posing, rig.responses, targets, rig.carriers)
+    inverse = Inverse(posing, rig.responses, targets, rig.carriers, rig.moving)
     index = {float(frame): t for t, frame in enumerate(track.frames)}
 
     def look(frames: FloatArray) -> list[Inverted]:

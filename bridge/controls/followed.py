@@ -10,7 +10,7 @@ from zlib import crc32
 import bpy
 import numpy as np
 
-from ...solver.arrays import BoolArray, FloatArray
+from ...solver.arrays import BoolArray, FloatArray, IntArray
 from ..accessors import armature_data, current_action, current_scene, pose_of, present
 from ..armature import fcurves
 from ..armature.incremental import Incremental, in_slices
@@ -29,14 +29,14 @@ _RESTS = (
 _POSES = ("custom_shape", "lock_", "ik_", "use_ik_")  # what their names begin with
 
 
-def telling_frames(frames: FloatArray, states: BoolArray) -> FloatArray:
-    """Frames (L,) of those (T,) that show all that acts in a rig at any: some that are spread
+def telling_frames(states: BoolArray) -> IntArray:
+    """Indices (L,) of the frames that show all that acts in a rig at any: some that are spread
     evenly, and the middle one of each state of its switches. states: (T, N), as of `acting`."""
-    at = np.linspace(0, len(frames) - 1, LOOKS).round().astype(int).tolist()
+    at = np.linspace(0, len(states) - 1, LOOKS).round().astype(int).tolist()
     for state in np.unique(states, axis=0):
         rows = np.flatnonzero((states == state).all(axis=1))
         at.append(int(rows[len(rows) // 2]))
-    return np.asarray(frames[np.unique(at)])
+    return np.asarray(np.unique(at))
 
 
 def acting(

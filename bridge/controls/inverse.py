@@ -8,7 +8,7 @@ as the reference: Engl, Hanke and Neubauer, Regularization of Inverse Problems, 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +17,7 @@ from ...solver.arrays import BoolArray, FloatArray
 from ...solver.numerics.rotations import rotation_vector
 from ..armature.channels import proper
 from .followed import FAINT, Influences
-from .leading import led_by, moved_by, ranks
+from .leading import led_by, moved_by, movers, ranks
 from .needed import LEVER
 from .offsets import SIZE, changed, difference, offsets_of, places_of, with_offsets
 from .posing import Posed, Posing
@@ -109,12 +109,12 @@ class Inverse:
         responses: Responses,
         targets: Targets,
         carriers: Collection[str],
+        moving: Mapping[bytes, BoolArray],
     ) -> None:
         self._posing, self._targets = posing, targets
         self._carries = np.array([name in carriers for name in posing.controls])
-        self._groups = apart(responses)
-        self._responses = responses
-        self._ranks = ranks(responses)
+        self._every, self._moving = responses, moving
+        self._use(responses, responses)
         self._offsets = np.zeros((len(posing.controls), 7))
         self._change = np.zeros_like(self._offsets)  # of the offsets at the last frame
         self._influences = Influences(posing.armature)
@@ -128,6 +128,11 @@ class Inverse:
         self._weights = np.zeros_like(self._offsets)
         self._as_taken = False  # whether the bodies but go along with the pelvis at a frame
         self.tries = 0
+
+    def _use(self, known: Responses, now: Responses) -> None:
+        """Controls that are used from here on: what they may move, and what they do."""
+        self._groups, self._ranks = apart(known), ranks(known)
+        self._responses = now
 
     def solve(self, t: int) -> Inverted:
         """Solve the frame of index t: from what the one before needed, or from that changed once
@@ -177,7 +182,7 @@ class Inverse:
         lengths = {Freedom.SHIFT: self._targets.unit[t], Freedom.SIZE: SIZES / BESIDE}
         each = np.array([lengths.get(dof.freedom, 1.0) for dof in self._responses.dofs])
         places = places_of(self._responses.dofs)
-        self._weights[places] = BESIDE * each * felt[places[0]]
+        self._weights[places] = BESIDE * each
         return animated
 
     def unmet(self) -> list[int]:
@@ -197,6 +202,7 @@ class Inverse:
         self._posing.go_to(float(self._targets.frames[t + 1]))
         then = self._look(self._posing.bases(), after, t + 1).posed
         animated = self._begun(t)
+        after = np.where(self._felt[:, None], after, 0.0)
         every = np.ones(len(then.bodies), dtype=bool)
         starts = after, self._beside(animated, after, t, every, then)
         looks = [self._look(animated, start, t) for start in starts]
@@ -252,12 +258,15 @@ class Inverse:
 
     def _try_where_switched(self, animated: FloatArray) -> BoolArray:
         """At the first frame, and where other constraints act than before and so other controls do:
-        try them anew, and leave to the take those that do nothing. (C,) which do something."""
+        try them anew, and leave to the take those that do nothing as long as these act, here or
+        where the rig was looked at. (C,) which do something."""
         acts = self._influences.now() > FAINT
         if self._acted is None or (acts != self._acted).any():
-            self._responses = measured(self._posing, animated, self._groups)
-            self.tries += len(self._groups)
-            felt = np.array([moved_by(self._responses, c).any() for c in range(len(animated))])
+            groups = apart(self._every)
+            now = measured(self._posing, animated, groups)
+            self.tries += len(groups)
+            felt = movers(now) | self._moving.get(acts.tobytes(), False)
+            self._use(self._every.of_controls(felt), now.of_controls(felt))
             self._offsets[~felt] = 0.0
             self._change = np.zeros_like(self._offsets)
             self._felt = felt

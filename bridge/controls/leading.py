@@ -40,6 +40,12 @@ def moved_by(responses: Responses, control: int) -> BoolArray:
     return np.asarray(responses.follow[_own(responses, control)].any(axis=0))
 
 
+def movers(responses: Responses) -> BoolArray:
+    """(C,) whether each control moves any body."""
+    count = responses.moved.shape[1]
+    return np.array([moved_by(responses, c).any() for c in range(count)], dtype=bool)
+
+
 def _own(responses: Responses, control: int) -> list[int]:
     """The dofs of a control."""
     return [d for d, dof in enumerate(responses.dofs) if dof.control == control]

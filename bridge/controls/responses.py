@@ -137,6 +137,11 @@ class Responses:
             self.moved[np.ix_(rows, kept)],
         )
 
+    def of_controls(self, chosen: BoolArray) -> Responses:
+        """Those of the dofs of some controls (C,), which keep their indices."""
+        rows = [d for d, dof in enumerate(self.dofs) if chosen[dof.control]]
+        return self.part(rows, range(len(chosen)))
+
 
 def _rigid(dofs: Sequence[Dof], turns: FloatArray, posed: Posed) -> FloatArray:
     """(D, B, 3) shifts of heads that turn (D, B, 3) rigidly about their controls."""

@@ -153,6 +153,31 @@ def test_a_switch_between_forward_and_inverse_kinematics_is_followed() -> None:
 
 
 @pytest.mark.slow
+def test_what_comes_before_a_switch_is_as_near_and_as_cheap_as_without_it() -> None:
+    """Controls that do nothing until it is thrown are none of a rig until then."""
+    rig = generated_human(jumper(), arms=1.0, legs=0.0)
+    torso, leg = rig.pose.bones["torso"], rig.pose.bones["thigh_parent.L"]
+    for frame, height in ((1, -0.05), (8, -0.25), (16, -0.1)):
+        torso.location = (0.01 * frame, 0.0, height)
+        torso.keyframe_insert("location", frame=frame)
+    for frame, switch in ((1, 0.0), (12, 0.0), (13, 1.0)):
+        leg[SWITCH] = switch
+        leg.keyframe_insert(f'["{SWITCH}"]', frame=frame)
+    before, take = moved_take(rig, 12), np.arange(1.0, 17.0)
+    whole = complete(found_controls(rig, before.bones, take))
+    alone = complete(found_controls(rig, before.bones, before.frames))
+    assert {"thigh_fk.L", "shin_fk.L"} <= set(whole.controls) - set(alone.controls)
+    poses = sample(rig, before.frames)
+    switched, unswitched = (
+        complete(control_poses(controls, poses, before)) for controls in (whole, alone)
+    )
+    assert switched.off.max() < unswitched.off.max() + 1e-4
+    assert switched.off.max() < 1e-3
+    tried_once = 3 * (len(whole.controls) - len(alone.controls))
+    assert switched.tries <= unswitched.tries + tried_once
+
+
+@pytest.mark.slow
 def test_a_rig_made_by_hand_with_feet_and_poles_is_posed_through_these() -> None:
     rig = ik_rig()
     hips, stand = rig.pose.bones["hips"], rig.pose.bones["stand.L"]
