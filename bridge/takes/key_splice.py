@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from ...solver.arrays import FloatArray
 from ..armature import fcurves
 from ..armature.fcurves import KeyTable, joined, linear_keys, put, table
+from .switches import EPSILON, on_whole_frames, switched
 from .take_time import TakeTime
 
-EPSILON = 1e-4  # frames
 FEWEST_BAKED = 4  # keys side by side; two or three are a blink or a switch
 _CONSTANT = 0  # values of Blender's enums
 _FREE = 0
@@ -27,20 +27,33 @@ def retime(curve: bpy.types.FCurve, time: TakeTime) -> None:
 
     Keys outside of the frames whose durations changed take their handles along as they are. A curve
     with a key on every one of these, as of a recording, gets keys of what it shows on every frame.
+    A switch from one whole frame to the next stays one.
     """
     keys = table(curve)
     at = keys["co"][:, 0].copy()
     before, after = at <= time.recorded[0], at >= time.recorded[-1]
     whole = _whole_frames(at, time) if _is_baked(curve, keys, ~(before | after)) else np.empty(0)
-    shown = np.array([curve.evaluate(f) for f in time.to_recorded(whole)])
+    shown = np.array([curve.evaluate(f) for f in _seen(curve, time.to_recorded(whole))])
+    moved = on_whole_frames(at, keys["co"][:, 1], time) - time.to_result(at)
     for name in ("co", "handle_left", "handle_right"):
         frames = keys[name][:, 0].copy()
-        keys[name][:, 0] = np.where(after, frames + time.later, time.to_result(frames))
+        keys[name][:, 0] = np.where(after, frames + time.later, time.to_result(frames) + moved)
         keys[name][before, 0] = frames[before]
     put(curve, keys)
     if len(shown):
         ends = float(time.result[0]), float(time.result[-1])
         splice(curve, whole, shown, ends, FullTurns())
+
+
+def _seen(curve: bpy.types.FCurve, frames: FloatArray) -> FloatArray:
+    """The take's frames (T,) of which a baked curve's values are shown: the nearest whole one
+    where it is switched, which it is half of nowhere."""
+    if not len(frames):
+        return frames
+    around = np.arange(np.floor(frames[0]) - 1.0, np.ceil(frames[-1]) + 2.0)
+    thrown = switched(np.array([curve.evaluate(f) for f in around]))
+    interval = (np.floor(frames) - around[0]).astype(int)
+    return np.where(thrown[interval], np.round(frames), frames)
 
 
 def _is_baked(curve: bpy.types.FCurve, keys: KeyTable, changed: NDArray[np.bool_]) -> bool:

@@ -59,6 +59,30 @@ def test_a_switch_of_two_keys_side_by_side_is_no_baked_curve() -> None:
     assert smile[:, 1].tolist() == [0.0, 0.0, 1.0, 1.0]
 
 
+@pytest.mark.parametrize(
+    "keyed",
+    [
+        pytest.param({10: 0.0, 45: 0.0, 46: 1.0, 90: 1.0}, id="two keys"),
+        pytest.param({10: 0.0, 44: 0.0, 45: 0.0, 46: 1.0, 47: 1.0, 90: 1.0}, id="held"),
+        pytest.param({10: 0.0, 45: 0.0, 46: 1.0, 47: 0.0, 90: 0.0}, id="a blink"),
+        pytest.param({frame: float(frame > 45) for frame in range(1, LAST + 1)}, id="baked"),
+        pytest.param({10: 0.0, FIRST: 0.0, FIRST + 1: 1.0, 90: 1.0}, id="at the border"),
+    ],
+)
+def test_a_switch_is_half_thrown_on_no_whole_frame(keyed: dict[int, float]) -> None:
+    """Though durations change: the take has none either."""
+    armature = take()
+    finger = armature.pose.bones["finger"]
+    for frame, value in keyed.items():
+        finger["smile"] = value
+        finger.keyframe_insert('["smile"]', frame=frame)
+    write_result(armature, later(read_recording(armature)), name="Result")
+    (curve,) = (c for c in fcurves.curves_of(armature) if "smile" in c.data_path)
+    shown = np.array([curve.evaluate(frame) for frame in range(1, LAST + 4)])
+    assert {0.0, 1.0} == set(shown.round(5).tolist())
+    assert np.count_nonzero(np.diff(shown)) == np.count_nonzero(np.diff(list(keyed.values())))
+
+
 def test_sparse_curves_keep_their_keys_and_what_is_between_them() -> None:
     armature = take(every=7)
     before, recording = keys_of(armature), read_recording(armature)

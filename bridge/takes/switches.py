@@ -1,0 +1,62 @@
+"""Switches, thrown from one whole frame to the next, that stay so where durations change: no whole
+frame shows one half thrown.
+
+A curve is switched where one or two of the steps between keys on neighbouring whole frames change
+it, and not those beside them: a blink is thrown and thrown back. More steps are a motion.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...solver.arrays import BoolArray, FloatArray
+from .take_time import TakeTime
+
+EPSILON = 1e-4  # frames
+_MOST_STEPS = 2
+_LEVEL = 1e-6  # share of the largest value, or of 1, by which values are still the same
+
+
+def on_whole_frames(at: FloatArray, values: FloatArray, time: TakeTime) -> FloatArray:
+    """Result frames (n,) of a take's keys, of values (n,) at frames (n,): those of a switch are on
+    neighbouring whole frames there, too. Where durations shrink such that one has no room before
+    the next key, it is where the take's time has it."""
+    found = time.to_result(at)
+    for first, last in _runs(_changing(values) & _neighbours(at)):
+        middle = (found[first] + found[last]) / 2.0
+        begin = np.round(middle - (last - first) / 2.0)
+        if at[first] <= time.recorded[0] or at[last] >= time.recorded[-1]:
+            kept = first if at[first] <= time.recorded[0] else last
+            begin = np.round(found[kept]) - (kept - first)  # no duration changes there
+        elif first:
+            begin = max(begin, np.floor(found[first - 1] + EPSILON) + 1.0)
+        end = begin + last - first
+        if last + 1 == len(at) or end + EPSILON < found[last + 1]:
+            found[first : last + 1] = np.arange(begin, end + 1.0)
+    return found
+
+
+def switched(values: FloatArray) -> BoolArray:
+    """(T - 1,) whether a curve of values (T,) on whole frames is switched between each two."""
+    found = np.zeros(len(values) - 1, dtype=bool)
+    for first, last in _runs(_changing(values)):
+        found[first:last] = True
+    return found
+
+
+def _changing(values: FloatArray) -> BoolArray:
+    same = _LEVEL * max(1.0, float(np.abs(values).max(initial=0.0)))
+    return np.asarray(np.abs(np.diff(values)) > same)
+
+
+def _neighbours(at: FloatArray) -> BoolArray:
+    """(n - 1,) whether keys at frames (n,) and the next ones are on neighbouring whole frames."""
+    whole = np.abs(at - np.round(at)) < EPSILON
+    return np.asarray(whole[1:] & whole[:-1] & (np.abs(np.diff(at) - 1.0) < EPSILON))
+
+
+def _runs(steps: BoolArray) -> list[tuple[int, int]]:
+    """First and last key of each few steps (n - 1,) in a row."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], steps, [False]])))
+    runs = zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
+    return [(first, last) for first, last in runs if last - first <= _MOST_STEPS]
