@@ -1,7 +1,5 @@
 """Examine: what is wrong with a recording, before anything is fitted."""
 
-from dataclasses import replace
-
 import bpy
 
 from ...bridge.accessors import present, shown_range
@@ -31,13 +29,12 @@ from ..solve.meanwhile.standing import Kept
 from ..solve.meanwhile.steady import steady
 from ..solve.scene import read_bound, read_surfaces
 from ..solve.session import session
-from ..solve.solving import SolveState, Solving
+from ..solve.solving import SolveState
 from ..solve.task import Task, TaskOperator, answered
 from ..words.doctor_text import HEALTHY
 from ..words.doubt_text import frame_doubts
 
 FOUND = "Found {} in the recording; the panel Recording tells what, and the remedies"
-READS = 0.5  # of an examination, the share of playing the take in Blender
 FORGOTTEN = "The repairs that this file held could not be read and are left out; repair anew"
 
 
@@ -49,9 +46,6 @@ class ExamineOperator(TaskOperator, bpy.types.Operator):
         "feet that slide. Nothing is changed; remedies are offered"
     )
     bl_options = {"UNDO"}
-
-    def _begun(self) -> Solving:
-        return replace(super()._begun(), reads=READS)
 
     def task(self, context: bpy.types.Context) -> Task:
         armature = required_armature(context)

@@ -1,5 +1,6 @@
 """Adapt and Refine: a new action in which the contacts are where the artist put them."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import bpy
@@ -11,7 +12,7 @@ from ...bridge.armature.read import last_keyed
 from ...bridge.constraints.bone_mapping import chosen_parts
 from ...bridge.constraints.leaps import leaps_of, timed_phases
 from ...bridge.constraints.motion_problem import problem_of
-from ...bridge.controls.driven import beside_keys, turned_by_drivers
+from ...bridge.controls.driven import beside_keys, is_driven, turned_by_drivers
 from ...bridge.controls.missed.aimed import led_bones
 from ...bridge.controls.refusals import require_posable
 from ...bridge.loops.write_loop import root_bone
@@ -65,6 +66,9 @@ from .task import Task, TaskOperator, answered, take_best
 from .write_answer import write_answer
 from .written.keys import key_options
 
+# Of every frame, to write it: as the take and the result have it; and of controls, which are tried
+# some 16 times where they reach what was solved.
+LOOKS_AT_BONES, LOOKS_AT_CONTROLS = 3.0, 20.0
 NOT_ANALYSED = "Press Analyze first: there are no contacts to hold or move"
 
 
@@ -100,6 +104,9 @@ class Adapting(TaskOperator):
         if told and not self.leave_edits:
             self.report({"WARNING"}, told)
         return super().execute(context)
+
+    def looks(self) -> Mapping[SolveState, float]:
+        return looks_to_write(chosen_armature(bpy.context))
 
     def solution(self, settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
         """Solver options; asked: those of a recipe."""
@@ -181,10 +188,24 @@ class UseBestOperator(TaskOperator, bpy.types.Operator):
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         return {"FINISHED"} if take_best() else super().invoke(context, event)
 
+    def looks(self) -> Mapping[SolveState, float]:
+        return looks_to_write(chosen_armature(bpy.context))
+
     def task(self, context: bpy.types.Context) -> Task:
         done = yield from write_answer(*present(session().best_of(chosen_armature(context))))
         session().best = None
         return done
+
+
+def looks_to_write(armature: bpy.types.Object | None) -> Mapping[SolveState, float]:
+    """How often every frame is looked at, to check that a recording is as it was, and to write."""
+    parts = [] if armature is None else settings_of(armature).parts
+    bodies = [part.bone for part in parts if part.bone]
+    driven = armature is not None and is_driven(armature, bodies)
+    return {
+        SolveState.CHECKING: 1.0,
+        SolveState.WRITING: LOOKS_AT_CONTROLS if driven else LOOKS_AT_BONES,
+    }
 
 
 def ask_for(context: bpy.types.Context) -> Incremental[Asked]:

@@ -1,6 +1,6 @@
 """Analyze and Fit: what touches when in a recording, and how near physics comes to it."""
 
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
@@ -119,6 +119,9 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
         "what you changed about them"
     )
     bl_options = {"UNDO"}
+
+    def looks(self) -> Mapping[SolveState, float]:
+        return {SolveState.PREPARING: 1.0}
 
     def task(self, context: bpy.types.Context) -> Task:
         done = yield from analysis(context)

@@ -1,10 +1,12 @@
 """State machine of a solve that the artist waits for, with its progress text; without Blender."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from enum import Enum
 
 from ...solver.data.row_kinds import RowKind
 from ...solver.worker.protocol import Progress
+from .pace import Pace
 
 STAGES = {
     "fit": "fitting the physics",
@@ -33,7 +35,8 @@ class SolveState(Enum):
 
 
 MOST_TOLD = 1000.0  # times what is allowed
-CHECKING, WRITING = 0.9, 0.95  # shares of the whole at which these begin
+SOLVES_S = 5.0  # what a solve is expected to last, until it tells
+MOST_LOOKS = 3.0  # at each frame; a piece that has lasted longer is what its state takes long for
 
 
 @dataclass
@@ -41,8 +44,9 @@ class Solving:
     """A solve under way. Whoever runs it tells what happens; what cannot happen now raises
     ValueError, for it would be a mistake of ours. of, label: the operator that runs it, and what
     its button says. analysed: what an analysis found is written, and more is to come. written: the
-    result is shown, and is looked at and finished. reads: the share of the whole that reading the
-    recording is."""
+    result is shown, and is looked at and finished. looks: how often each state that is to come
+    looks at every frame, where reading the recording does so once: by this it is known early what
+    share of the whole each is."""
 
     of: str = ""
     state: SolveState = SolveState.READING
@@ -50,24 +54,40 @@ class Solving:
     label: str = "The work"
     analysed: bool = False
     written: bool = False
-    reads: float = 0.05
-    _part: float = 0.0  # of the current state
+    looks: Mapping[SolveState, float] = field(default_factory=dict)
+    pace: Pace = field(default_factory=Pace)
+    _reads_s: float = 0.0  # what reading the recording lasts: the longest piece before a solve
 
     def advance(self, to: SolveState) -> None:
         """The next part begins."""
         order = list(SolveState)
         if order.index(to) <= order.index(self.state):
             raise ValueError(f"{to.name} after {self.state.name}")
-        self.state, self._part = to, 0.0
+        self._begin(to)
+
+    def _begin(self, state: SolveState) -> None:
+        self.state = state
+        self.pace.next_part()
 
     def did(self, part: float) -> None:
-        """So much of the current state's work, 0 to 1, is done; or of its longest piece."""
-        self._part = max(self._part, part)
+        """So much of a piece of the current state's work, 0 to 1, is done."""
+        if part <= 0.0:
+            return
+        piece = self.pace.lasts(part)
+        if self.state in (SolveState.READING, SolveState.CHECKING):
+            self._reads_s = max(self._reads_s, piece)
+        order = list(SolveState)
+        to_come = order[order.index(self.state) + 1 :]
+        later = sum(self.looks.get(state, 0.0) for state in to_come) * self._reads_s
+        later += SOLVES_S * (self.state is SolveState.READING)
+        tells = part * piece > MOST_LOOKS * self._reads_s  # how long its state takes, too
+        own = 0.0 if tells else self.looks.get(self.state, 0.0) * self._reads_s
+        self.pace.expect(piece, own, later)
 
     def again(self) -> None:
         """The analysis is written, and a solve begins after it."""
-        self.state, self.progress, self.analysed = SolveState.READING, None, True
-        self._part = 0.0
+        self.progress, self.analysed = None, True
+        self._begin(SolveState.READING)
 
     def heard(self, progress: Progress) -> None:
         """The worker told of a step, or of how far it is."""
@@ -104,19 +124,8 @@ class Solving:
 
     @property
     def share(self) -> float:
-        """Of the whole, 0 to 1."""
-        match self.state:
-            case SolveState.READING:
-                begin, end = 0.0, self.reads
-            case SolveState.SOLVING | SolveState.STOPPING:
-                begin, end = self.reads, CHECKING
-            case SolveState.CHECKING:
-                begin, end = CHECKING, WRITING
-            case SolveState.WRITING | SolveState.PREPARING:
-                begin, end = WRITING, 1.0
-            case SolveState.ENDED:
-                return 1.0
-        return begin + (end - begin) * self._part
+        """Of the whole, 0 to 1, by the time that it takes."""
+        return 1.0 if self.state is SolveState.ENDED else self.pace.share
 
     def passes(self, event: str) -> bool:
         """True for events ("Z", "LEFTMOUSE") that go on to Blender.

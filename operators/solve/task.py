@@ -1,6 +1,6 @@
 """Cooperative multitasking of long operators: parts and a worker, so that Blender never freezes."""
 
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from time import perf_counter
 from typing import TypeVar
@@ -119,7 +119,11 @@ class TaskOperator(ReadyOperator, FaultyOperator):
                     shared().close()
 
     def _begun(self) -> Solving:
-        return Solving(type(self).bl_idname, label=type(self).bl_label)
+        return Solving(type(self).bl_idname, label=type(self).bl_label, looks=self.looks())
+
+    def looks(self) -> Mapping[SolveState, float]:
+        """How often each state after reading looks at every frame, as of `Solving`."""
+        return {}
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         if bpy.app.background or context.window is None:
