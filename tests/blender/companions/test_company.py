@@ -37,6 +37,8 @@ from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.blender.helpers.figures.company import FRAMES, LENGTH, ON, at, beside, take
 
+pytestmark = pytest.mark.usefixtures("_enabled")
+
 FIRST, LAST = 20, 35
 AHEAD = StanceMove("ground 2", (0.0, 0.0, 0.0), 0.0, (0.0, -0.4, 0.0))
 TURNED = StanceMove("ground 2", (0.3, -0.2, 0.0), 0.5, (0.1, -0.4, 0.2))
@@ -269,7 +271,6 @@ def renewed(armature: bpy.types.Object, move: StanceMove, **options: object) -> 
     return action
 
 
-@pytest.mark.usefixtures("_enabled")
 def test_polish_of_a_helper_bone_is_put_on_where_it_is_now() -> None:
     armature = take()
     bpy.context.scene.hangtime.armature = armature
@@ -292,7 +293,6 @@ def test_polish_of_a_helper_bone_is_put_on_where_it_is_now() -> None:
     assert max(off[:23].max(), off[31:].max()) < 1e-4
 
 
-@pytest.mark.usefixtures("_enabled")
 def test_a_difference_on_the_take_has_them_too() -> None:
     armature = take()
     bpy.context.scene.hangtime.armature = armature

@@ -13,6 +13,8 @@ from hangtime.operators.words.take_text import take_lines, take_record
 from hangtime.tests.blender.helpers.figures.company import ON, at, beside, take
 from hangtime.tests.blender.helpers.figures.cycle import FRAMES, looped
 
+pytestmark = pytest.mark.usefixtures("_enabled")
+
 CLOSE = 5e-4  # m and turns: single precision, metres away
 
 

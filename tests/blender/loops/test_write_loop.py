@@ -17,6 +17,8 @@ from hangtime.solver.data.recording import PoseTrack
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.blender.helpers.figures.cycle import FRAMES, TRAVEL, cycle, looped
 
+pytestmark = pytest.mark.usefixtures("_enabled")
+
 CLOSE = 2e-5  # m and rad; single precision
 
 

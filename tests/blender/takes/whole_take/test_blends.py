@@ -32,6 +32,8 @@ from hangtime.tests.blender.takes.whole_take.asked import (
     take,
 )
 
+pytestmark = pytest.mark.usefixtures("_enabled")
+
 
 @pytest.mark.parametrize("mode", ["QUATERNION", "XYZ", "ZXY", "AXIS_ANGLE"])
 def test_keys_outside_of_frames_and_blends_stay_bit_by_bit(mode: str) -> None:

@@ -28,6 +28,8 @@ from hangtime.tests.blender.takes.whole_take.asked import (
     take,
 )
 
+pytestmark = pytest.mark.usefixtures("_enabled")
+
 
 def test_curves_with_a_key_on_every_frame_have_one_on_every_frame_of_the_result() -> None:
     """Also to its very end, where the take ends with the adapted frames."""

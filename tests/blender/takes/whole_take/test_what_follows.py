@@ -30,6 +30,8 @@ from hangtime.tests.blender.takes.whole_take.asked import (
     take,
 )
 
+pytestmark = pytest.mark.usefixtures("_enabled")
+
 STEADY = ("spine", "head", "foot")  # bones that do not inherit rotation, where that is tried
 
 
