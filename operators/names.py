@@ -69,6 +69,8 @@ class OperatorId(StrEnum):
     REMOVE_SURFACE = "hangtime.remove_surface"
     SELECT_SURFACE = "hangtime.select_surface"
     ADD_SUPPORT_BOX = "hangtime.add_support_box"
+    ADD_OFFERED_CONTACTS = "hangtime.add_offered_contacts"
+    ADD_HOLDS = "hangtime.add_holds"
     JOINT_LIMITS = "hangtime.preset_joint_limits"
     JOINT_STRENGTH = "hangtime.preset_joint_strength"
     SOFT_LANDING = "hangtime.preset_soft_landing"

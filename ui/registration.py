@@ -24,8 +24,8 @@ from ..operators.lists import (
     choose_named,
     constraints,
     contacts,
+    offered_support,
     presets,
-    support_box,
     surfaces,
 )
 from ..operators.recording import examine, remedies, repair
@@ -42,7 +42,7 @@ from .timeline import handler as timeline
 
 # A panel comes after the one that it is part of.
 MODULES = (
-    *(analyze, adapt, contacts, constraints, body_changes, surfaces, support_box, presets),
+    *(analyze, adapt, contacts, constraints, body_changes, surfaces, offered_support, presets),
     *(bone_presets, choose_named, examine, remedies, repair, results, takes),
     *(export_takes, recipe_export, save_plots),
     *(pin_operator, turn_stance, limit_operator, contact_edge_operator),

@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 
-from ...bridge.accessors import present
+from ...bridge.accessors import current_scene, present
 from ...bridge.armature.poses import metres_per_unit
 from ...bridge.armature.traces_store import kept
 from ...bridge.properties.overridden_lists import linked_count
@@ -48,25 +48,30 @@ class AddContactOperator(PolledOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
-        armature, scene = required_armature(context), present(context.scene)
-        settings, traces = settings_of(armature), present(kept(armature)).traces
-        column = traces.contacts.index(self.point)
-        first = float(np.clip(scene.frame_current, *traces.frames[[0, -1]]))
-        last = min(first + USUAL_FRAMES, float(traces.frames[-1]))
-        during = (traces.frames >= first) & (traces.frames <= last)
-        row = settings.contacts.add()
-        row.name, row.point, row.added = f"{self.point} added", self.point, True
-        alike = [c for c in settings.contacts if c.point == self.point and not c.added]
-        row.bone = alike[0].bone if alike else ""
-        row.found_start = row.start_frame = first
-        row.found_end = row.end_frame = last
-        place = traces.points[during, column].mean(axis=0) / metres_per_unit(scene)
-        row.found_at = row.at = place
-        near = [c for c in settings.contacts if c.start_frame <= last and c.end_frame >= first]
-        row.phase = next((c.phase for c in near if c.phase), "")
-        join(settings, row, 1.0 / metres_per_unit(scene))
-        settings.active_contact = len(settings.contacts) - 1
+        frame = float(present(context.scene).frame_current)
+        add_contact(required_armature(context), self.point, frame, frame + USUAL_FRAMES)
         return {"FINISHED"}
+
+
+def add_contact(armature: bpy.types.Object, point: str, first: float, last: float) -> None:
+    """A new row of a point that the analysis knows, chosen; it touches from frame to frame, as far
+    as these are recorded, where it was then, or where its stance was moved to."""
+    settings, traces = settings_of(armature), present(kept(armature)).traces
+    first, last = (float(np.clip(each, *traces.frames[[0, -1]])) for each in (first, last))
+    during = (traces.frames >= first) & (traces.frames <= last)
+    row = settings.contacts.add()
+    row.name, row.point, row.added = f"{point} added", point, True
+    alike = [c for c in settings.contacts if c.point == point and not c.added]
+    row.bone = alike[0].bone if alike else ""
+    row.found_start = row.start_frame = first
+    row.found_end = row.end_frame = last
+    metre = 1.0 / metres_per_unit(current_scene())
+    place = traces.points[during, traces.contacts.index(point)].mean(axis=0)
+    row.found_at = row.at = metre * place
+    near = [c for c in settings.contacts if c.start_frame <= last and c.end_frame >= first]
+    row.phase = next((c.phase for c in near if c.phase), "")
+    join(settings, row, metre)
+    settings.active_contact = len(settings.contacts) - 1
 
 
 class _OfContact(PolledOperator):

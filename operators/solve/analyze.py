@@ -66,7 +66,7 @@ from .common import (
 from .meanwhile.standing import Kept
 from .meanwhile.steady import steady
 from .scene import read_bound, read_surfaces
-from .session import session
+from .session import OfferedSupport, session
 from .solving import SolveState
 from .task import Task, TaskOperator, answered
 
@@ -230,9 +230,7 @@ def _analysis(
     for each in unseen:
         if each.rate is not None:  # nothing carries: the scene plays it at a wrong speed
             raise wrong_speed(armature, present(recorded_action(armature)), each)
-    boxes = [box for each in unseen for box in each.boxes]
-    if boxes:
-        session().support = (armature.session_uid, tuple(boxes))
+    session().support = _offered(armature, answer)
     yield None
     lost = write_analysis(settings, recording, answer)
     settings.analysed_state = state.as_text()
@@ -249,6 +247,17 @@ def _analysis(
     if lost:
         found = f"{found}. {said(LostEdits(lost)).rstrip('.')}"
     return AnalysisOutcome(f"{found}; but {said(odd)}" if odd is not None else found, lost)
+
+
+def _offered(armature: bpy.types.Object, answer: Analysed) -> OfferedSupport:
+    """What would carry the body where the analysis found nothing that does."""
+    unseen = [each for each in answer.unseen if isinstance(each, UnseenSupport)]
+    off = [each for each in answer.unseen if isinstance(each, UnseenSupport | OffBalance)]
+    contacts = dict.fromkeys(contact for each in off for contact in each.hands)
+    contacts |= dict.fromkeys(contact for each in unseen for contact in each.walls)
+    holds = dict.fromkeys(hold for each in off for hold in each.holds)
+    boxes = tuple(box for each in unseen for box in each.boxes)
+    return OfferedSupport(armature.session_uid, boxes, tuple(contacts), tuple(holds))
 
 
 def _prepare_drag(context: bpy.types.Context) -> Incremental[None]:

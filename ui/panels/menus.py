@@ -128,7 +128,8 @@ GROUPS: tuple[tuple[OperatorId | type[bpy.types.Menu], ...], ...] = (
         OperatorId.PLACE_BY_EMPTY,
         OperatorId.PUT_BACK,
     ),
-    (AddConstraintMenu, AddBodyChangeMenu, AddSurfaceMenu, OperatorId.ADD_SUPPORT_BOX),
+    (AddConstraintMenu, AddBodyChangeMenu, AddSurfaceMenu),
+    (OperatorId.ADD_SUPPORT_BOX, OperatorId.ADD_OFFERED_CONTACTS, OperatorId.ADD_HOLDS),
     (
         OperatorId.ADAPT,
         OperatorId.REFINE,

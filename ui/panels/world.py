@@ -7,8 +7,8 @@ from ...bridge.properties.settings import HangtimeSettings, scene_settings
 from ...bridge.properties.surface import HangtimeSurface
 from ...bridge.rows.choices import SurfaceRole
 from ...bridge.scene.members import is_gone
+from ...operators.lists.offered_support import offered, sized
 from ...operators.lists.row_lists import RowList
-from ...operators.lists.support_box import offered, sized
 from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
 from ...solver.data.solver_options import ShapeSource
@@ -18,7 +18,7 @@ from .menus import AddSurfaceMenu
 from .sidebar import ArmaturePanel, draw_list, lines, settings_in, split
 
 GONE = "Not in the scene any more"
-UNSEEN = "Something unseen carries the body above the floor"
+UNSEEN = "Something unseen carries the body"
 
 
 class WorldPanel(ArmaturePanel):
@@ -42,11 +42,21 @@ class WorldPanel(ArmaturePanel):
 
 def _draw_offer(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """What would carry the body where the analysis found nothing that does."""
-    boxes = offered(chosen_armature(context))
-    if boxes:
+    offer = offered(chosen_armature(context))
+    if offer.boxes or offer.contacts or offer.holds:
         lines(layout, wrapped(context, UNSEEN), icon="QUESTION")
-        text = f"Add Box Here ({', '.join(sized(box) for box in boxes)})"
+    if offer.boxes:
+        text = f"Add Box Here ({', '.join(sized(box) for box in offer.boxes)})"
         layout.operator(OperatorId.ADD_SUPPORT_BOX, text=text, icon="MESH_CUBE")
+    if offer.contacts:
+        points = dict.fromkeys(contact.point for contact in offer.contacts)
+        text = f"Let Them Touch ({', '.join(points)})"
+        layout.operator(OperatorId.ADD_OFFERED_CONTACTS, text=text, icon="VIEW_PAN")
+    if offer.holds:
+        bones = dict.fromkeys(hold.bone for hold in offer.holds)
+        layout.operator(
+            OperatorId.ADD_HOLDS, text=f"Hold On Here ({', '.join(bones)})", icon="PINNED"
+        )
 
 
 def _draw_surface(

@@ -119,8 +119,8 @@ RECORDINGS: dict[type[Fault], str | tuple[str, ...]] = {
         "Box Here in the panel World, or an [[object]] in a recipe), or choose frames without it.",
         "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
         "fall, for hands are on the ground, whose contacts are not found where they roll. Let them "
-        "touch in these frames ({hands:contacts}): Add Contact, the + beside the contacts of a "
-        "stance, or an [[add_contact]] in a recipe.",
+        "touch in these frames ({hands:contacts}): Let Them Touch in the panel World, or an "
+        "[[add_contact]] in a recipe.",
         "The body falls as gravity has it at {rate:.5g} frames a second, but the scene has "
         "{scene_rate:.5g} (frames {first:g} to {last:g}); set the scene's frame rate to "
         "{rate:.5g}.",
@@ -139,13 +139,12 @@ RECORDINGS: dict[type[Fault], str | tuple[str, ...]] = {
         "it over.",
         "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
         "fall: the feet rest with steep soles, as on a wall. Let them touch in these frames "
-        "({walls:contacts}): Add Contact, the + beside the contacts of a stance, or an "
-        "[[add_contact]] in a recipe; and list the wall in the panel World, or as an [[object]], "
-        "which they then push off from.",
+        "({walls:contacts}): Let Them Touch in the panel World, or an [[add_contact]] in a recipe; "
+        "and list the wall there, or as an [[object]], which they then push off from.",
         "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
         "fall, for hands hold on to something above, as of who hangs. To have that carry it in the "
-        "result, give each a Point with Pushes Back and Grip ({holds:held}), or a [[point]] with "
-        "“environment” and “grip” in a recipe.",
+        "result, give each a Point with Pushes Back and Grip ({holds:held}): Hold On Here in the "
+        "panel World, or a [[point]] with “environment” and “grip” in a recipe.",
     ),
     faults.ScaledStrip: "The body falls as gravity has it at {rate:.5g} frames a second, but the "
     "scene has {scene_rate:.5g} (frames {first:g} to {last:g}), and the NLA strip “{strip}” plays "
@@ -173,15 +172,14 @@ RECORDINGS: dict[type[Fault], str | tuple[str, ...]] = {
         "leans, a Point with Pushes Back there.",
         "In frames {spans:spans} the weight is beside the feet, for hands are on the ground, whose "
         "contacts are not found, so something unseen carries it in the fit. Let them touch "
-        "({hands:contacts}): Add Contact, the + beside the contacts of a stance, or an "
-        "[[add_contact]] in a recipe.",
+        "({hands:contacts}): Let Them Touch in the panel World, or an [[add_contact]] in a recipe.",
         "In frames {spans:spans} the weight is beside what touches ({touching:names}), so "
         "something unseen carries it in the fit. Correct the frames in which that touches, or give "
         "what else rests on something a Point with Pushes Back.",
         "In frames {spans:spans} the weight is beside what touches ({touching:names}), for hands "
         "hold on to something above, as of who hangs, and contacts only push. Give each hand a "
-        "Point with Pushes Back and Grip ({holds:held}), or a [[point]] with “environment” and "
-        "“grip” in a recipe, instead of a contact.",
+        "Point with Pushes Back and Grip ({holds:held}), instead of a contact: Hold On Here in the "
+        "panel World, or a [[point]] with “environment” and “grip” in a recipe.",
     ),
     faults.FitNeedsSupport: "No motion comes near the recording unless something unseen carries "
     "the body in frames {spans:spans}, which the recipe refuses; correct the frames of the "

@@ -1,0 +1,48 @@
+"""What would carry a body that something unseen carries, added by one click."""
+
+from __future__ import annotations
+
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.armature.actions import read_recorded
+from hangtime.bridge.constraints.motion_problem import problem_of
+from hangtime.operators.lists.offered_support import offered
+from hangtime.operators.solve.session import OfferedSupport, session
+from hangtime.solver.data.problem import AddedContact, MotionProblem
+from hangtime.solver.data.requests import PointRequest, When
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+JOINT = PointRequest(
+    *("Left hand holds on", "LeftHand", When(frames=(10.0, 40.0)), (0.0, 0.0, 0.0)),
+    environment=True,
+    grip=True,
+)
+MIDDLE = PointRequest(
+    *("Right hand holds on", "RightHand", When(frames=(12.0, 30.0))), environment=True, grip=True
+)
+
+
+def asked(armature: bpy.types.Object) -> MotionProblem:
+    return problem_of(armature.hangtime, read_recorded(armature, None, None))
+
+
+def test_hands_hold_on_where_and_when_the_analysis_says(analysed: bpy.types.Object) -> None:
+    """The same Points that the command line prints."""
+    session().support = OfferedSupport(analysed.session_uid, holds=(JOINT, MIDDLE))
+    assert bpy.ops.hangtime.add_holds() == {"FINISHED"}
+    assert asked(analysed).requests.points == (JOINT, MIDDLE)
+    assert not bpy.ops.hangtime.add_holds.poll()
+
+
+def test_contacts_are_added_in_their_frames_and_the_rest_stays_offered(
+    analysed: bpy.types.Object,
+) -> None:
+    touches = AddedContact("Left hand", 120.0, 150.0), AddedContact("Right hand", 130.0, 140.0)
+    session().support = OfferedSupport(analysed.session_uid, contacts=touches, holds=(JOINT,))
+    assert bpy.ops.hangtime.add_offered_contacts() == {"FINISHED"}
+    assert asked(analysed).added == touches
+    assert offered(analysed) == OfferedSupport(analysed.session_uid, holds=(JOINT,))
+    session().support = None
