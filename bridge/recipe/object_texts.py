@@ -9,10 +9,13 @@ from ...solver.arrays import FloatArray, IntArray
 from ...solver.data.scene import SceneObject, SceneRole, SupportBox
 from ...solver.doctor.stance.footing import FLOOR_OFF, TOP_OFF
 from ...solver.numerics.rotations import axis_rotation
+from ...solver.unseen.offered import OfferedSupport
 from ..recipe_syntax.toml_text import degrees, entries
 from ..shapes.boxes import Known, known_solid
+from .contacts import added_texts
 from .object_rates import rate_values
 from .objects import HEADER
+from .requests import point_texts
 
 FINE = 3  # decimals of the metres and degrees of a box that is offered
 
@@ -33,6 +36,12 @@ def mesh_files(scene: Sequence[SceneObject]) -> dict[str, str]:
             files[thing.name] = next(name for name in names if name.casefold() not in taken)
             taken.add(files[thing.name].casefold())
     return files
+
+
+def offered_texts(offer: OfferedSupport) -> list[str]:
+    """The tables of what would carry a body that something unseen carries."""
+    contacts, holds = added_texts(offer.contacts), point_texts(offer.holds)
+    return [*support_texts(offer.boxes), *contacts, *holds]
 
 
 def support_texts(boxes: Sequence[SupportBox]) -> list[str]:

@@ -5,11 +5,10 @@ Loads none of the solver's stages: a batch plans and hands out cells without the
 
 from pathlib import Path
 
-from ...bridge.recipe.contacts import added_texts
-from ...bridge.recipe.object_texts import support_texts
+from ...bridge.recipe.object_texts import offered_texts
 from ...bridge.recipe.problem import locate, read_recipe_text
-from ...bridge.recipe.requests import point_texts
-from ...solver.data.faults import BadRecipe, Fault, OffBalance, UnseenSupport
+from ...solver.data.faults import BadRecipe, Fault
+from ...solver.unseen.offered import OfferedSupport
 from ..words.messages import recipe_place, sentence
 
 FAILED = 1  # by no fault of what was asked
@@ -20,20 +19,9 @@ CANCELLED = 130
 
 def explained(fault: Fault, recipe: Path | None) -> str:
     """The fault in words, with the recipe's line where one is to blame, or lines to add to it."""
-    if remedies := _remedies(fault):
+    if remedies := offered_texts(OfferedSupport.of([fault])):
         return "\n\n".join([sentence(fault), *remedies]).rstrip()
     if recipe is None or isinstance(fault, BadRecipe):
         return sentence(fault)
     line = locate(read_recipe_text(recipe), fault)
     return sentence(fault) if line is None else f"{recipe_place(recipe, line)}: {sentence(fault)}"
-
-
-def _remedies(fault: Fault) -> list[str]:
-    """What carries the body, as a recipe has it, where that is told."""
-    if isinstance(fault, UnseenSupport):
-        boxes = support_texts(fault.boxes)
-        added = added_texts((*fault.hands, *fault.walls))
-        return [*boxes, *added, *point_texts(fault.holds)]
-    if isinstance(fault, OffBalance):
-        return [*added_texts(fault.hands), *point_texts(fault.holds)]
-    return []

@@ -12,24 +12,24 @@ from ...bridge.rows.choices import SurfaceRole
 from ...bridge.scene.support_box import add_support_box
 from ...solver.data.requests import PointRequest
 from ...solver.data.scene import SupportBox
+from ...solver.unseen.offered import OfferedSupport
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import FaultyOperator, chosen_armature, required_armature
-from ..solve.session import OfferedSupport, session
+from ..solve.session import session
 from .contacts import add_contact
 from .surfaces import row_of
 
 NOTHING_UNSEEN = "Press Analyze first; it tells where something unseen carries the body"
 ADDED = "Added {}; press Analyze again"
-NOTHING = OfferedSupport(0)
 
 
 def offered(armature: bpy.types.Object | None) -> OfferedSupport:
     """What would carry an armature's body, as its last analysis found."""
     support = session().support
-    if armature is None or support is None or support.armature != armature.session_uid:
-        return NOTHING
-    return support
+    if armature is None or support is None or support[0] != armature.session_uid:
+        return OfferedSupport()
+    return support[1]
 
 
 def sized(box: SupportBox) -> str:
@@ -83,7 +83,7 @@ class AddOfferedContactsOperator(_OfOffer, bpy.types.Operator):
         offer = offered(armature)
         for each in offer.contacts:
             add_contact(armature, each.point, each.start_frame, each.end_frame)
-        session().support = replace(offer, contacts=())
+        session().support = (armature.session_uid, replace(offer, contacts=()))
         self.report({"INFO"}, ADDED.format(", ".join(each.point for each in offer.contacts)))
         return {"FINISHED"}
 
@@ -101,7 +101,7 @@ class AddHoldsOperator(_OfOffer, bpy.types.Operator):
         armature = required_armature(context)
         offer = offered(armature)
         names = [_add_hold(armature, each) for each in offer.holds]
-        session().support = replace(offer, holds=())
+        session().support = (armature.session_uid, replace(offer, holds=()))
         self.report({"INFO"}, f"Added {', '.join(names)}")
         return {"FINISHED"}
 

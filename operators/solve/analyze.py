@@ -45,6 +45,7 @@ from ...solver.doctor.figure import figure_of
 from ...solver.doctor.noise import find_noise
 from ...solver.skeleton.bind_pose import bind_frames
 from ...solver.skeleton.mapping import UNSURE
+from ...solver.unseen.offered import OfferedSupport
 from ...solver.worker.protocol import Analysed, Fitted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
@@ -66,7 +67,7 @@ from .common import (
 from .meanwhile.standing import Kept
 from .meanwhile.steady import steady
 from .scene import read_bound, read_surfaces
-from .session import OfferedSupport, session
+from .session import session
 from .solving import SolveState
 from .task import Task, TaskOperator, answered
 
@@ -230,7 +231,8 @@ def _analysis(
     for each in unseen:
         if each.rate is not None:  # nothing carries: the scene plays it at a wrong speed
             raise wrong_speed(armature, present(recorded_action(armature)), each)
-    session().support = _offered(armature, answer)
+    offer = OfferedSupport.of(answer.unseen, problem.requests.points)
+    session().support = (armature.session_uid, offer)
     yield None
     lost = write_analysis(settings, recording, answer)
     settings.analysed_state = state.as_text()
@@ -247,17 +249,6 @@ def _analysis(
     if lost:
         found = f"{found}. {said(LostEdits(lost)).rstrip('.')}"
     return AnalysisOutcome(f"{found}; but {said(odd)}" if odd is not None else found, lost)
-
-
-def _offered(armature: bpy.types.Object, answer: Analysed) -> OfferedSupport:
-    """What would carry the body where the analysis found nothing that does."""
-    unseen = [each for each in answer.unseen if isinstance(each, UnseenSupport)]
-    off = [each for each in answer.unseen if isinstance(each, UnseenSupport | OffBalance)]
-    contacts = dict.fromkeys(contact for each in off for contact in each.hands)
-    contacts |= dict.fromkeys(contact for each in unseen for contact in each.walls)
-    holds = dict.fromkeys(hold for each in off for hold in each.holds)
-    boxes = tuple(box for each in unseen for box in each.boxes)
-    return OfferedSupport(armature.session_uid, boxes, tuple(contacts), tuple(holds))
 
 
 def _prepare_drag(context: bpy.types.Context) -> Incremental[None]:

@@ -14,10 +14,9 @@ from ...bridge.recipe.result import ResultOptions
 from ...bridge.repairs.analysed_state import AnalysedState
 from ...bridge.results.made import AskedSettings
 from ...bridge.scene.read import SceneReading
-from ...solver.data.problem import AddedContact, MotionProblem
+from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
-from ...solver.data.requests import PointRequest
-from ...solver.data.scene import SupportBox
+from ...solver.unseen.offered import OfferedSupport
 from ...solver.worker.protocol import Adapted
 from ..status_bar import StatusBar
 from ..words.failure_text import Failure
@@ -60,30 +59,19 @@ class Running(Protocol):
         """Nothing of the work remains."""
 
 
-@dataclass(frozen=True)
-class OfferedSupport:
-    """What would carry the body of an armature (its number) that something unseen carries: boxes
-    under its feet, contacts, and points at which hands hold on."""
-
-    armature: int
-    boxes: tuple[SupportBox, ...] = ()
-    contacts: tuple[AddedContact, ...] = ()
-    holds: tuple[PointRequest, ...] = ()
-
-
 @dataclass
 class Session:
     """The solve under way, who runs it, why the last one failed, what it was asked, and the best
-    motion that it found; what would carry a body that something unseen carries; of which armature,
-    recording and bodies the controls were tried last, and pose them; what the last drag was about,
-    or Analyze has prepared the next one for; frames a second and metres per unit of the scene that
-    was seen last; digests of actions' keys, as long as these cannot be others; what the status bar
-    says."""
+    motion that it found; the armature (its number) whose body something unseen carries, and what
+    would; of which armature, recording and bodies the controls were tried last, and pose them; what
+    the last drag was about, or Analyze has prepared the next one for; frames a second and metres
+    per unit of the scene that was seen last; digests of actions' keys, as long as these cannot be
+    others; what the status bar says."""
 
     solving: Solving | None = None
     failure: Failure | None = None
     best: tuple[Asked, Adapted] | None = None
-    support: OfferedSupport | None = None
+    support: tuple[int, OfferedSupport] | None = None
     tried: tuple[int, str, tuple[str, ...]] | None = None
     dragged: Asked | None = None
     units: tuple[float, float] | None = None

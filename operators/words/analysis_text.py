@@ -5,19 +5,17 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
-from ...bridge.recipe.contacts import added_texts
-from ...bridge.recipe.object_texts import object_text, support_texts
+from ...bridge.recipe.object_texts import object_text, offered_texts
 from ...bridge.recipe.recording import FILE, RECORDING, FileReading
-from ...bridge.recipe.requests import point_texts
 from ...bridge.recipe_syntax.toml_text import sections
 from ...solver.analysis.analyse import Analysis
 from ...solver.analysis.pins.pinned_places import backward_stances
 from ...solver.contacts.footfalls import footfalls, takes_steps
 from ...solver.data.contacts import Contact, Phase, PhaseKind
-from ...solver.data.faults import OffBalance, UnseenSupport
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
 from ...solver.doctor.repairs import Repairs
+from ...solver.unseen.offered import OfferedSupport
 from .messages import sentence, together
 from .report_text import guesses, held_at_rest
 
@@ -46,14 +44,7 @@ def analysis_text(analysis: Analysis, origin: Origin) -> str:
 def _unseen(analysis: Analysis) -> list[str]:
     """Where something unseen carries the body, and a box, hands or what they hold, that would."""
     told = [sentence(each) for each in together(analysis.unseen)]
-    unseen = [each for each in analysis.unseen if isinstance(each, UnseenSupport)]
-    boxes = [box for each in unseen for box in each.boxes]
-    on_hands = [e for e in analysis.unseen if isinstance(e, UnseenSupport | OffBalance)]
-    added = dict.fromkeys(contact for each in on_hands for contact in each.hands)
-    added |= dict.fromkeys(contact for each in unseen for contact in each.walls)
-    holds = dict.fromkeys(point for each in on_hands for point in each.holds)
-    boxed = support_texts(boxes)
-    return ["", *told, *boxed, *added_texts(added), *point_texts(holds)] if told else []
+    return ["", *told, *offered_texts(OfferedSupport.of(analysis.unseen))] if told else []
 
 
 def _contact_lines(analysis: Analysis) -> list[str]:

@@ -43,7 +43,7 @@ class WorldPanel(ArmaturePanel):
 def _draw_offer(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """What would carry the body where the analysis found nothing that does."""
     offer = offered(chosen_armature(context))
-    if offer.boxes or offer.contacts or offer.holds:
+    if offer:
         lines(layout, wrapped(context, UNSEEN), icon="QUESTION")
     if offer.boxes:
         text = f"Add Box Here ({', '.join(sized(box) for box in offer.boxes)})"

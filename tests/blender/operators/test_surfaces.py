@@ -23,7 +23,7 @@ from hangtime.operators.drag.rays import Ray
 from hangtime.operators.drag.snapping import Snapping
 from hangtime.operators.solve.adapt import ask_for
 from hangtime.operators.solve.scene import note_surfaces, stale_surfaces
-from hangtime.operators.solve.session import Asked, OfferedSupport, session
+from hangtime.operators.solve.session import Asked, session
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.reports.constraints import ConstraintReport
 from hangtime.solver.data.row_kinds import RowKind
@@ -31,6 +31,7 @@ from hangtime.solver.data.scene import SceneRole, SupportBox
 from hangtime.solver.doctor.repairs import Repairs
 from hangtime.solver.scene.checks import check_scene
 from hangtime.solver.scene.triangle_mesh import placed_mesh
+from hangtime.solver.unseen.offered import OfferedSupport
 from hangtime.tests.blender.helpers.actions import curves_of
 from hangtime.tests.blender.helpers.rows import make_stances
 from hangtime.tests.blender.helpers.skins import make_skin
@@ -366,7 +367,7 @@ def test_a_jump_recorded_on_a_train_rides_on_it(jump: bpy.types.Object) -> None:
 
 def test_a_box_is_added_under_the_feet_in_the_scenes_units(rig: bpy.types.Object) -> None:
     box = SupportBox((0.4, 0.3, 0.25), (1.0, 2.0, 0.0), np.pi / 2)
-    session().support = OfferedSupport(rig.session_uid, (box,))
+    session().support = (rig.session_uid, OfferedSupport((box,)))
     bpy.context.scene.unit_settings.scale_length = 0.01
     assert bpy.ops.hangtime.add_support_box() == {"FINISHED"}
     (row,) = rig.hangtime.surfaces
@@ -385,9 +386,8 @@ def test_a_box_that_was_added_goes_with_the_recording_onto_the_floor(
     rig: bpy.types.Object,
 ) -> None:
     """And back; what the artist brought into the scene stays."""
-    session().support = OfferedSupport(
-        rig.session_uid, (SupportBox((0.4, 0.3, 0.25), (1.0, 2.0, 0.5), 0.0),)
-    )
+    offered = SupportBox((0.4, 0.3, 0.25), (1.0, 2.0, 0.5), 0.0)
+    session().support = (rig.session_uid, OfferedSupport((offered,)))
     assert bpy.ops.hangtime.add_support_box() == {"FINISHED"}
     box, own = rig.hangtime.surfaces[0].object, make_box("Stage")
     add_row(rig, own)
@@ -403,9 +403,8 @@ def test_a_box_that_was_added_goes_with_the_recording_onto_the_floor(
 
 
 def test_a_box_is_offered_for_its_own_armature_alone(rig: bpy.types.Object) -> None:
-    session().support = OfferedSupport(
-        rig.session_uid + 1, (SupportBox((1, 1, 1), (0, 0, 0), 0.0),)
-    )
+    box = SupportBox((1, 1, 1), (0, 0, 0), 0.0)
+    session().support = (rig.session_uid + 1, OfferedSupport((box,)))
     assert not bpy.ops.hangtime.add_support_box.poll()
     session().support = None
 

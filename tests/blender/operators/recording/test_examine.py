@@ -26,13 +26,14 @@ from hangtime.bridge.repairs.stored import (
     look_at_examination,
 )
 from hangtime.bridge.rows.phases import unseen_frames
-from hangtime.operators.solve.session import OfferedSupport, session
+from hangtime.operators.solve.session import session
 from hangtime.operators.timeline.timeline_bars import rows_of
 from hangtime.solver.data.problem import Mend
 from hangtime.solver.data.scene import SupportBox
 from hangtime.solver.doctor.examination.repair import as_asked, unplaced
 from hangtime.solver.doctor.repairs import Repairs, UpAxis
 from hangtime.solver.doctor.stance.feet import FootFaultKind
+from hangtime.solver.unseen.offered import OfferedSupport
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.blender.helpers.solids import add_row
 from hangtime.tests.blender.operators.recording.damages import kinds
@@ -114,9 +115,8 @@ def test_noise_is_told_by_analyze_until_it_is_smoothed(
 @pytest.mark.slow
 def test_a_box_that_was_offered_before_a_repair_is_no_longer(examined) -> None:
     """It would stand where the recording was."""
-    session().support = OfferedSupport(
-        examined.session_uid, (SupportBox((1, 1, 1), (0, 0, 0), 0.0),)
-    )
+    box = SupportBox((1, 1, 1), (0, 0, 0), 0.0)
+    session().support = (examined.session_uid, OfferedSupport((box,)))
     assert bpy.ops.hangtime.add_support_box.poll()
     bpy.ops.hangtime.repair_all()
     assert not bpy.ops.hangtime.add_support_box.poll()
