@@ -59,13 +59,13 @@ class AddSupportBoxOperator(_OfOffer, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> OperatorResult:
         armature = required_armature(context)
-        boxes = offered(armature).boxes
-        for box in boxes:
+        offer = offered(armature)
+        for box in offer.boxes:
             made = add_support_box(box)
             row = row_of(settings_of(armature), made)
             row.object, row.name, row.role = made, made.name, SurfaceRole.GROUND.name
-        session().support = None
-        self.report({"INFO"}, ADDED.format(" and ".join(sized(box) for box in boxes)))
+        session().support = (armature.session_uid, replace(offer, boxes=()))
+        self.report({"INFO"}, ADDED.format(" and ".join(sized(box) for box in offer.boxes)))
         return {"FINISHED"}
 
 
