@@ -20,7 +20,7 @@ from ..recipe.export import ExportOptions
 from ..rows.choices import FileFormat, RootMotion
 from .baked_rig import BakedTake
 from .engines import CONVENTIONS, format_of
-from .root_place import with_root
+from .root_place import is_still, with_root
 from .shapes import sample_shapes
 from .skeleton import Outline, Skeleton, outline, scale_of, skeleton
 
@@ -134,7 +134,7 @@ def _travelling(
     options: ExportOptions,
 ) -> FloatArray:
     """Poses (T, B, 4, 4) whose way begins where, and is carried by what, the options say. A root
-    bone that does not go along is at rest, under the hips."""
+    bone that stays where it is, or left in place does not go along, is at rest, under the hips."""
     path = going.path
     if options.at_origin:
         start = np.linalg.inv(path[0])
@@ -147,7 +147,8 @@ def _travelling(
     rest = made.rest[found.root]
     if options.root is RootMotion.ROOT_BONE:
         return with_root(poses, found, made.rest, going.pelvis, _in_file(path, space) @ rest)
-    if going.root_rests:
+    in_place = options.root is RootMotion.IN_PLACE
+    if going.root_rests if in_place else is_still(poses[:, found.root], made.rest):
         still = np.tile(rest, (len(poses), 1, 1))
         return with_root(poses, found, made.rest, going.pelvis, still)
     return poses

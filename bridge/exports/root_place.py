@@ -20,7 +20,7 @@ def with_root(
     """
     top = found.root
     assert top is not None
-    size = float(np.ptp(rest[:, :3, 3], axis=0).max())
+    size = _size(rest)
     placed, on_root, body = poses.copy(), {top}, {pelvis}
     placed[:, top] = root
     for i, (name, parent) in enumerate(zip(found.names, found.parents, strict=True)):
@@ -30,6 +30,17 @@ def with_root(
             on_root.add(i)
             placed[:, i] = root @ np.linalg.solve(rest[top], rest[i])
     return placed
+
+
+def is_still(poses: FloatArray, rest: FloatArray) -> bool:
+    """Whether a bone (T, 4, 4) keeps one pose, in a figure of bones at rest (B, 4, 4)."""
+    moved = np.ptp(poses, axis=0)
+    moved[:3, 3] /= _size(rest)
+    return bool(moved.max() < _AT_REST)
+
+
+def _size(rest: FloatArray) -> float:
+    return float(np.ptp(rest[:, :3, 3], axis=0).max())
 
 
 def _rests(poses: FloatArray, rest: FloatArray, size: float) -> bool:

@@ -16,7 +16,7 @@ from ...bridge.results.combined import bake_shown
 from ...bridge.results.look_again import unphysical_since
 from ...bridge.rows.choices import Engine, FileFormat, RootMotion
 from ...bridge.takes.takes import takes_of
-from ...solver.data.faults import OutputNotWritable
+from ...solver.data.faults import Fault, OutputNotWritable
 from ..names import OperatorId
 from ..operator_types import FROM_BLEND, OperatorResult
 from ..solve.common import (
@@ -165,11 +165,18 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
         files = {path: taken}
         if self.takes == "FILES":
             files = {file: [take] for file, take in take_files(path, taken, options.engine).items()}
+        written: list[str] = []
         for file, held in files.items():
-            skin = export_takes(performer, held, file, options, _pelvis(armature, performer))
+            try:
+                skin = export_takes(performer, held, file, options, _pelvis(armature, performer))
+            except Fault:
+                if written:
+                    self.report({"INFO"}, f"Exported {', '.join(written)}")
+                raise
+            written.append(file.name)
         left_out = [take.name for take in chosen if take not in taken]
         since = {take.name: unphysical_since(armature, take) for take in taken}
-        said = ", ".join(file.name for file in files) + (skin_text(skin) if options.skin else "")
+        said = ", ".join(written) + (skin_text(skin) if options.skin else "")
         self._tell(performer, said, options, left_out, since)
         return {"FINISHED"}
 

@@ -9,6 +9,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
+from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.read import record
 from hangtime.bridge.companions.root_motion import way
 from hangtime.bridge.exports.export import export_takes
@@ -147,6 +148,31 @@ def test_at_the_origin_a_take_begins_as_the_figure_stands_at_rest(
     for one in (hips, foot):  # distances from the first hips are those of before
         apart = [each.heads[:, one] - each.heads[0, hips] for each in (before, after)]
         np.testing.assert_allclose(*(np.linalg.norm(each, axis=1) for each in apart), atol=1e-4)
+
+
+def test_at_the_origin_a_root_that_turns_below_the_hips_goes_on_turning(tmp_path: Path) -> None:
+    """As it is, the whole take is moved: what the root does on its spot is a part of it."""
+    armature = walking()
+    root = armature.pose.bones["root"]
+    root.rotation_mode = "XYZ"
+    for frame in (1, 10):
+        root.rotation_euler = (0.0, 0.15 * frame, 0.0)
+        root.keyframe_insert("rotation_euler", frame=frame)
+    hips = armature.pose.bones["hips"]
+    for curve in fcurves.holder(armature).fcurves:
+        if curve.data_path == hips.path_from_id("location"):
+            curve.mute = True
+    shown = record(armature, np.arange(1.0, 11.0))
+    options = ExportOptions(at_origin=True)
+    path = tmp_path / "turns.fbx"
+    export_takes(armature, [armature.animation_data.action], path, options, pelvis="hips")
+    again = reimport(path, shown.frames)
+    turned = [
+        each.rotations[-1, each.index("root")] @ each.rotations[0, each.index("root")].T
+        for each in (shown, again)
+    ]
+    assert np.trace(turned[0]) < 2.9
+    assert np.trace(turned[1]) == pytest.approx(np.trace(turned[0]), abs=1e-3)
 
 
 def test_as_it_is_takes_no_root_bone_but_where_an_engine_needs_one(tmp_path: Path) -> None:
