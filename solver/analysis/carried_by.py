@@ -161,11 +161,13 @@ def _held(
             on = np.arange(hold.first, hold.last + 1)[~aloft[hold.first : hold.last + 1]]
             if len(on) > 1 and inside[on].any():
                 carried[on] = True
+                grasp = float(frames[on[0]]), float(frames[on[-1]])
                 found.append(
                     PointRequest(
-                        f"{side.value.capitalize()} hand holds on",
+                        # By when, for a hand may hold on twice, and a recipe wants names apart.
+                        f"{side.value.capitalize()} hand holds on from {grasp[0]:g}",
                         performance.character.bodies[body].bone,
-                        When(frames=(float(frames[on[0]]), float(frames[on[-1]]))),
+                        When(frames=grasp),
                         offset=(0.0, 0.0, 0.0) if hold.by_joint else None,
                         environment=True,
                         grip=True,

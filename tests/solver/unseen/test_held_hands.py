@@ -12,6 +12,7 @@ from hangtime.operators.words.messages import sentence
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.data.faults import OffBalance, UnseenSupport
 from hangtime.solver.data.problem import AddedContact, MotionProblem
+from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.unseen.held_hands import HandTracks, holds
 from hangtime.tests.helpers.hung import RELEASE, hung
@@ -28,6 +29,19 @@ def hand(height: float, head: float, pelvis: float, speed: float = 0.0) -> HandT
     )
     joint[:, 0] = speed * TIMES + 3.0 * np.maximum(TIMES - 1.0, 0.0)
     return HandTracks(joint, joint, above, below)
+
+
+def between_rungs() -> Recording:
+    """Who swings three times as slowly, and moves one hand after the other to another rung."""
+    swings = hung()
+    held = int((swings.times <= RELEASE).sum())
+    slow = np.concatenate([np.repeat(np.arange(held), 3), np.arange(held, len(swings.times))])
+    times, heads = np.arange(len(slow)) / swings.rate, swings.heads[slow]
+    for name, start in zip(HANDS, (1.3, 1.6), strict=True):
+        moved = np.where(times <= 3.0 * RELEASE, np.clip((times - start) / 0.2, 0.0, 1.0), 0.0)
+        heads[:, swings.index(name), 0] += 0.6 * moved
+    rotations, frames = swings.rotations[slow], 1.0 + np.arange(len(slow))
+    return replace(swings, times=times, frames=frames, heads=heads, rotations=rotations, known=())
 
 
 def test_who_hangs_holds_on_until_he_lets_go() -> None:
@@ -69,6 +83,14 @@ def test_who_hangs_is_told_points_that_carry() -> None:
     assert parse_recipe("\n".join(texts)).problem.requests.points == told.holds
     assert all(text.strip() in said for text in texts)
     assert all(text in analysis_text(analysis, Origin("hung")) for text in texts)
+
+
+def test_a_hand_that_takes_two_rungs_is_told_points_that_one_recipe_takes() -> None:
+    (told,) = analyse(between_rungs(), MotionProblem()).unseen
+    assert isinstance(told, UnseenSupport)
+    assert [point.bone for point in told.holds] == ["LeftHand"] * 2 + ["RightHand"] * 2
+    texts = "\n".join(point_texts(told.holds))
+    assert parse_recipe(texts).problem.requests.points == told.holds
 
 
 def test_hands_that_go_with_the_body_hold_nothing() -> None:
