@@ -66,7 +66,8 @@ def unseen_carriers(
         hands: tuple[AddedContact, ...] = ()
         walls: tuple[AddedContact, ...] = ()
         leaning = _leans(performance, gap, floor_m)
-        held = () if leaning else _held(performance, schedule, gap)
+        # Who falls at another rate holds on to nothing: `_fitting_rate` has asked by places.
+        held = () if leaning or rate is not None else _held(performance, schedule, gap)
         if held:
             yield UnseenSupport(first, last, holds=held)
             continue

@@ -82,3 +82,18 @@ def test_what_falls_unlike_a_true_flight_tells_no_rate() -> None:
     lifted = 4.0 * 0.15 * np.maximum(u * (1.0 - u), 0.0)  # at 2.4 m/s²
     heads = jump().heads + lifted[:, None, None] * np.array([0.0, 0.0, 1.0])
     assert told_rates(replace(jump(), heads=heads)) == [None]
+
+
+def test_raised_hands_that_are_slow_by_the_clock_alone_hold_on_to_nothing() -> None:
+    """A jump of 0.36 s at 150 frames a second, with the arms up, in a scene of 30."""
+    stands, seconds, before = jump(), 0.36, 60  # frames
+    flown = np.clip((np.arange(2 * before + 54) - before) / 150.0, 0.0, seconds)
+    high = 0.5 * 9.81 * flown * (seconds - flown)
+    heads = stands.heads[:1] + high[:, None, None] * np.array([0.0, 0.0, 1.0])
+    for side, aside in (("Left", 0.25), ("Right", -0.25)):
+        above = heads[:, stands.index("Head")] + [aside, 0.0, 0.35]
+        heads[:, stands.index(f"{side}Hand")] = above
+    still = np.repeat(stands.rotations[:1], len(heads), axis=0)
+    frames = np.arange(len(heads), dtype=float)
+    slow = replace(stands, times=frames / 30.0, frames=frames, heads=heads, rotations=still)
+    assert told_rates(replace(slow, known=())) == [pytest.approx(150.0, rel=0.05)]
