@@ -19,7 +19,8 @@ from ..scene.belt import belt_speed
 from ..scene.fall_rate import fitting_rate, is_pulled_down
 from ..scene.support import boxes_beneath, steps_on_walls
 from ..unseen.held import is_held
-from ..unseen.held_hands import HandTracks, holds
+from ..unseen.held_hands import Grasp, HandTracks, holds
+from ..unseen.support_force import HAND_OVER
 from .balance import (
     LASTS,
     SURELY_LASTS,
@@ -55,6 +56,8 @@ def unseen_carriers(
         return
     recording = performance.recording
     agreed = agreed_rate(performance, schedule)
+    beside = off_balance(performance, schedule, SURELY_LASTS)
+    needed = _needs_more(performance, schedule, beside)
     low, slid = (each(performance, schedule.unseen) for each in (_on_floor, skids_in))
     for gap in schedule.unseen:
         first, last = _frame(recording, gap.start), _frame(recording, gap.end)
@@ -67,7 +70,7 @@ def unseen_carriers(
         walls: tuple[AddedContact, ...] = ()
         leaning = _leans(performance, gap, floor_m)
         # Who falls at another rate holds on to nothing: `_fitting_rate` has asked by places.
-        held = () if leaning or rate is not None else _held(performance, schedule, gap)
+        held = () if leaning or rate is not None else _held(performance, schedule, gap, needed)
         if held:
             yield UnseenSupport(first, last, holds=held)
             continue
@@ -104,7 +107,8 @@ def weight_beside(performance: Performance, schedule: ContactSchedule) -> Iterat
     if leaning:
         contacts = dict.fromkeys(contact for gap in leaning for contact in added[gap])
         yield OffBalance(_spans(performance, leaning), tuple(contacts))
-    held = {gap: _held(performance, schedule, gap) for gap in others}
+    needed = _needs_more(performance, schedule, found)
+    held = {gap: _held(performance, schedule, gap, needed) for gap in others}
     if hanging := [gap for gap in others if held[gap]]:
         points = dict.fromkeys(point for gap in hanging for point in held[gap])
         touching = _touching(performance, schedule, hanging)
@@ -144,10 +148,11 @@ def _touching(
 
 
 def _held(
-    performance: Performance, schedule: ContactSchedule, gap: Interval
+    performance: Performance, schedule: ContactSchedule, gap: Interval, needed: BoolArray
 ) -> tuple[PointRequest, ...]:
     """Points for the hands from which the body hangs in most of a gap, as far as it does not fly;
-    none where they hold on for less."""
+    none where they hold on for less. needed: (T,) as of `_needs_more`, which a hold may outlast: of
+    who stands below a bar with the hands on it, they carry nothing."""
     times, frames = performance.times, performance.recording.frames
     aloft = np.zeros(len(times), dtype=np.bool_)
     for flight in schedule.flights:
@@ -159,8 +164,11 @@ def _held(
         if body is None or tracks is None:
             continue
         for hold in holds(times, tracks, smoothing(performance)):
-            on = np.arange(hold.first, hold.last + 1)[~aloft[hold.first : hold.last + 1]]
-            if len(on) > 1 and inside[on].any():
+            for first, last in _parts(hold, needed | aloft):
+                on = np.arange(first, last + 1)[~aloft[first : last + 1]]
+                within = on[inside[on]]
+                if len(within) == 0 or times[within[-1]] - times[within[0]] < LASTS:
+                    continue
                 carried[on] = True
                 grasp = float(frames[on[0]]), float(frames[on[-1]])
                 found.append(
@@ -175,6 +183,24 @@ def _held(
                     )
                 )
     return tuple(found) if carried[inside].mean() >= HELD_SHARE else ()
+
+
+def _parts(hold: Grasp, where: BoolArray) -> list[tuple[int, int]]:
+    """First and last frame (index) of the parts of a hold in which something (T,) is true."""
+    within = runs(where[hold.first : hold.last + 1])
+    return [(hold.first + first, hold.first + last) for first, last in within]
+
+
+def _needs_more(
+    performance: Performance, schedule: ContactSchedule, beside: Sequence[Interval]
+) -> BoolArray:
+    """(T,) when something else carries the body than what touches, or shares the load with it
+    before and after. beside: in which the weight is beside what touches."""
+    needed = np.zeros(len(performance.times), dtype=np.bool_)
+    for each in (*schedule.unseen, *beside):
+        around = Interval(each.start - HAND_OVER, each.end + HAND_OVER)
+        needed |= _inside(performance, around)
+    return needed
 
 
 def _hand(performance: Performance, side: Side) -> HandTracks | None:

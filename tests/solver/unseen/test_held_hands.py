@@ -15,7 +15,8 @@ from hangtime.solver.data.problem import AddedContact, MotionProblem
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.unseen.held_hands import HandTracks, holds
-from hangtime.tests.helpers.hung import RELEASE, hung
+from hangtime.solver.unseen.support_force import HAND_OVER
+from hangtime.tests.helpers.hung import BAR, RELEASE, hung
 
 TIMES = np.linspace(0.0, 2.0, 121)
 WIDTH = 0.06  # s
@@ -42,6 +43,24 @@ def between_rungs() -> Recording:
         heads[:, swings.index(name), 0] += 0.6 * moved
     rotations, frames = swings.rotations[slow], 1.0 + np.arange(len(slow))
     return replace(swings, times=times, frames=frames, heads=heads, rotations=rotations, known=())
+
+
+def pulls_up(aside: float) -> Recording:
+    """Who stands with the hands on a bar, pulls the body up by 0.5 m within 0.8 s and stays there.
+
+    aside: m, by which the hands go to another bar, as soon as the feet have left the floor.
+    """
+    stands = hung()
+    up = np.clip((stands.times - 0.7) / 0.8, 0.0, 1.0)
+    heads = np.repeat(stands.heads[-1:], len(up), axis=0)
+    heads[..., 2] += 0.5 * (up**2 * (3.0 - 2.0 * up))[:, None]
+    goes = aside * np.clip((stands.times - 0.9) / 0.15, 0.0, 1.0)
+    for name in HANDS:
+        hand = stands.index(name)
+        heads[:, hand] = heads[0, hand] * [1.0, 1.0, 0.0] + [0.0, 0.0, BAR]
+        heads[:, hand, 0] += goes
+    rotations = np.repeat(stands.rotations[-1:], len(up), axis=0)
+    return replace(stands, heads=heads, rotations=rotations, known=())
 
 
 def test_who_hangs_holds_on_until_he_lets_go() -> None:
@@ -83,6 +102,20 @@ def test_who_hangs_is_told_points_that_carry() -> None:
     assert parse_recipe("\n".join(texts)).problem.requests.points == told.holds
     assert all(text.strip() in said for text in texts)
     assert all(text in analysis_text(analysis, Origin("hung")) for text in texts)
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.6])
+def test_hands_on_a_bar_hold_on_from_when_the_feet_leave_the_floor(aside: float) -> None:
+    """Be they there before, or on another bar until then."""
+    recording = pulls_up(aside)
+    (told,) = analyse(recording, MotionProblem()).unseen
+    assert isinstance(told, UnseenSupport)
+    assert [point.bone for point in told.holds] == HANDS
+    for point in told.holds:
+        assert point.when.frames is not None
+        first, last = point.when.frames
+        assert first >= told.first - HAND_OVER * recording.rate - 1.0
+        assert last == recording.frames[-1]
 
 
 def test_a_hand_that_takes_two_rungs_is_told_points_that_one_recipe_takes() -> None:
