@@ -101,7 +101,8 @@ def _variant(fault: Fault) -> int:
         case faults.UnseenSupport():
             carrying = fault.leaning, bool(fault.boxes), bool(fault.hands), fault.rate is not None
             mistaken = fault.exchanged, fault.skidding, fault.lying, fault.resting
-            return _last_of(True, *carrying, *mistaken, bool(fault.walls), bool(fault.holds))
+            held = bool(fault.holds), bool(fault.holds and fault.boxes)
+            return _last_of(True, *carrying, *mistaken, bool(fault.walls), *held)
         case faults.OffBalance():
             on_hands = bool(fault.hands), bool(fault.touching), bool(fault.holds)
             return _last_of(True, bool(fault.resting), *on_hands)

@@ -17,7 +17,7 @@ from ..data.scene import SupportBox
 from ..numerics.runs import runs
 from ..scene.belt import belt_speed
 from ..scene.fall_rate import fitting_rate, is_pulled_down
-from ..scene.support import boxes_beneath, steps_on_walls
+from ..scene.support import boxes_beneath, feet_stay, steps_on_walls
 from ..unseen.held import is_held
 from ..unseen.held_hands import Grasp, HandTracks, holds
 from ..unseen.support_force import HAND_OVER
@@ -71,21 +71,20 @@ def unseen_carriers(
         leaning = _leans(performance, gap, floor_m)
         # Who falls at another rate holds on to nothing: `_fitting_rate` has asked by places.
         held = () if leaning or rate is not None else _held(performance, schedule, gap, needed)
-        if held:
-            yield UnseenSupport(first, last, holds=held)
-            continue
         if leaning:
             hands = _hands(performance, schedule, gap, low_palms(performance))
-        elif rate is None:
+        elif rate is None and (not held or feet_stay(points, _inside(performance, gap))):
+            # Who stands on a platform with raised hands may hang as well, and so both are told.
             boxes = boxes_beneath(performance.times, points, gap, floor_m)
-            walls = () if boxes else _on_walls(performance, gap)
-        on_floor = rate is None and not boxes and gap in low
+            walls = () if boxes or held else _on_walls(performance, gap)
+        on_floor = rate is None and not boxes and not held and gap in low
         yield UnseenSupport(
             *(first, last, boxes, hands, rate, recording.rate),
             leaning=leaning,
             skidding=on_floor and gap in slid,
             resting=on_floor and gap not in slid,
             walls=walls,
+            holds=held,
         )
 
 

@@ -21,6 +21,7 @@ from .triangle_mesh import placed_mesh
 
 LEAST_REST = 0.1  # s, for which feet stay where they are carried
 LEAST_HEIGHT = 0.04  # m of a box; less is a floor that is not level
+STAYS = 0.05  # m from its median place, of a foot that stands
 SOLE_MARGIN = 0.05  # m around the soles' lines, which run through the middle of feet 0.1 m broad
 
 # m, of the ground at instants (N,) s beneath points (N, 3) m
@@ -216,6 +217,20 @@ def _ahead(feet: Mapping[str, ContactPoint], name: str) -> FloatArray:
     side = name.rpartition(" ")[0]
     heel, toe = (feet[f"{side} {end}"].track for end in ("heel", "toe"))
     return np.asarray(toe - heel)
+
+
+def feet_stay(points: Mapping[str, ContactPoint], during: BoolArray) -> bool:
+    """Whether a foot keeps one place, with a sole that is not steep, in most of some frames (T,),
+    as on a box. One that hangs down without swinging may, too."""
+    feet = _feet(points)
+    for name, point in feet.items():
+        track, ahead = point.track[during], _ahead(feet, name)[during]
+        away = np.linalg.norm(track - np.median(track, axis=0), axis=1)
+        across = np.linalg.norm(ahead[:, :2], axis=1)
+        lies = np.abs(ahead[:, 2]) <= DEFAULT_FRICTION * across
+        if np.mean((away < STAYS) & lies) > 0.5:
+            return True
+    return False
 
 
 def _feet(points: Mapping[str, ContactPoint]) -> dict[str, ContactPoint]:

@@ -145,6 +145,12 @@ RECORDINGS: dict[type[Fault], str | tuple[str, ...]] = {
         "fall, for hands hold on to something above, as of who hangs. To have that carry it in the "
         "result, give each a Point with Pushes Back and Grip ({holds:held}): Hold On Here in the "
         "panel World, or a [[point]] with “environment” and “grip” in a recipe.",
+        "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
+        "fall: the feet rest {boxes[0].size[2]:length} above the floor, as on a box, and hands "
+        "keep one place above the head, as of who hangs. If it stands on a box, add that (Add Box "
+        "Here in the panel World, or an [[object]] in a recipe); if it hangs, give each hand a "
+        "Point with Pushes Back and Grip ({holds:held}): Hold On Here there, or a [[point]] with "
+        "“environment” and “grip” in a recipe.",
     ),
     faults.ScaledStrip: "The body falls as gravity has it at {rate:.5g} frames a second, but the "
     "scene has {scene_rate:.5g} (frames {first:g} to {last:g}), and the NLA strip “{strip}” plays "

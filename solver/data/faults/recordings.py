@@ -268,7 +268,7 @@ class UnseenSupport(Fault):
 
     boxes: what would, where feet rest above the floor. leaning: whether another part of the body is
     on the floor. hands: their contacts, where that is hands. holds: of hands that hold on to
-    something above. rate: frames a second at which the
+    something above; beside boxes either may be what carries. rate: frames a second at which the
     body would fall as gravity has it, where the scene's, scene_rate, is another. exchanged: whether
     the legs are there, so that none of these is meant. skidding: whether feet are on the ground,
     and go from place to place. resting: whether they stay there, without a contact. lying: whether

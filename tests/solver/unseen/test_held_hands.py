@@ -126,6 +126,22 @@ def test_a_hand_that_takes_two_rungs_is_told_points_that_one_recipe_takes() -> N
     assert parse_recipe(texts).problem.requests.points == told.holds
 
 
+def test_who_stands_on_something_unlisted_with_raised_hands_is_offered_a_box_as_well() -> None:
+    (told,) = analyse(pulls_up(0.0), MotionProblem()).unseen
+    assert isinstance(told, UnseenSupport)
+    assert [box.size[2] for box in told.boxes] == [pytest.approx(0.5, abs=0.02)]
+    said = explained(told, None)
+    assert "as on a box, and hands keep one place above the head" in said
+    assert "[[object]]\nname" in said
+    assert "[[point]]\nname" in said
+
+
+def test_who_swings_from_a_bar_is_offered_no_box() -> None:
+    (told,) = analyse(hung(), MotionProblem()).unseen
+    assert isinstance(told, UnseenSupport)
+    assert told.boxes == ()
+
+
 def test_hands_that_go_with_the_body_hold_nothing() -> None:
     (told,) = analyse(hung(high_hands=False), MotionProblem()).unseen
     assert isinstance(told, UnseenSupport)
