@@ -24,7 +24,7 @@ from ..terminal.stages import WIDTH, Stages
 from ..words.analysis_text import analysis_text, starter_recipe
 from ..words.report_text import gravity_lines
 from .clip import Clip, LoadedClip, load
-from .doctor import examined, told, write_recipe_of
+from .doctor import examined, told, touched, write_recipe_of
 from .doubts import doubts_about
 from .earlier import clear, listed_files
 from .explained import CANCELLED, FAILED, NO_SOLUTION, WRONG_INPUT, explained
@@ -259,13 +259,14 @@ def _ask_about(problem: MotionProblem, loaded: LoadedClip, repairs: Repairs | No
 def doctor(options: argparse.Namespace) -> None:
     """Prints what is wrong with a clip as it was recorded; leaves a recipe where asked.
 
-    A recipe tells how the clip is read and which bone is which; its frames are counted in what its
-    own repairs leave, so neither counts. Raises Fault.
+    A recipe tells how the clip is read, which bone is which, and which contacts carry the body; the
+    frames that it chooses are counted in what its own repairs leave, so neither counts. Raises
+    Fault.
     """
     asked = _recipe(options)
     as_recorded = MotionProblem(bones=asked.problem.bones)
     clip, problem = _clip(options, asked), overridden(as_recorded, options)
-    examination = examined(clip, problem, options.mass)
+    examination = examined(clip, problem, options.mass, touched(asked))
     print(told(examination, as_json=options.json), end="")
     target: Path | None = options.write_recipe
     if target is not None:

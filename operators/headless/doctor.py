@@ -7,13 +7,16 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from ...bridge.recipe.problem import Recipe
 from ...bridge.recipe.recording import FILE, RECORDING
 from ...bridge.recipe_syntax.toml_text import entries, sections
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
 from ...solver.doctor.examination.diagnose import Diagnosis, diagnose
+from ...solver.doctor.examination.suspects import stated_contacts
+from ...solver.doctor.falls import Spans
 from ...solver.doctor.finding import Finding
-from ...solver.doctor.repairs import filled_frame
+from ...solver.doctor.repairs import filled_frame, recorded_frame
 from ...solver.doctor.stretch import Span
 from ..files.outbox import write_new
 from ..words.analysis_text import relative
@@ -38,12 +41,24 @@ class Examination:
     mass: float | None
 
 
-def examined(clip: Clip, problem: MotionProblem, mass: float | None) -> Examination:
-    """mass: kg, None where the artist stated none. Raises Fault."""
+def examined(
+    clip: Clip, problem: MotionProblem, mass: float | None, carried: Spans = ()
+) -> Examination:
+    """mass: kg, None where the artist stated none. carried: recorded frames in which contacts
+    touch that are stated. Raises Fault."""
     recording, whole, origin = read_clip(clip, problem)
-    diagnosis = diagnose(recording, problem.bones, mass).counted_in(whole, recording.ends)
+    diagnosis = diagnose(recording, problem.bones, mass, carried=carried)
+    diagnosis = diagnosis.counted_in(whole, recording.ends)
     problem = replace(problem, frames=problem.frames and recording.ends)
     return Examination(diagnosis, origin, clip, problem, mass)
+
+
+def touched(recipe: Recipe) -> Spans:
+    """Recorded frames of the contacts that a recipe states, which counts them in what its own
+    repairs fill."""
+    missing = recipe.repairs.missing if recipe.repairs else ()
+    spans = stated_contacts(recipe.problem)
+    return tuple((recorded_frame(a, missing), recorded_frame(b, missing)) for a, b in spans)
 
 
 def told(examination: Examination, *, as_json: bool) -> str:

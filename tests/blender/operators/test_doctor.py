@@ -75,6 +75,24 @@ def test_a_recipe_tells_how_a_clip_is_read_that_is_examined_as_recorded(
     assert written.file == FileReading(unit=TOO_LARGE, up="Y")
 
 
+@pytest.mark.parametrize("missing", [0, 200])
+def test_nothing_falls_while_a_contact_touches_that_the_recipe_states(
+    missing: int, tmp_path: Path, capsys
+) -> None:
+    """Whose frames count with those that the recipe's repairs put in."""
+    recipe, clip = tmp_path / "vault.toml", str(mocap_path(CLIP))
+    slow = ["doctor", clip, "--rate", "60", "--json"]
+    assert main(slow) == 0
+    (told,) = json.loads(capsys.readouterr().out)["findings"]
+    assert told["kind"] == "time scale"
+    first, last = told["frames"][0]
+    contact = f"start_frame = {first + missing + 10}\nend_frame = {last + missing - 10}\n"
+    repairs = f"[recording]\nmissing = {{ 57 = {missing} }}\n" if missing else ""
+    recipe.write_text(f'{repairs}[[add_contact]]\npoint = "Left hand"\n{contact}')
+    assert main([*slow, "--recipe", str(recipe)]) == 0
+    assert json.loads(capsys.readouterr().out)["findings"] == []
+
+
 @pytest.mark.slow
 def test_more_frames_than_the_file_announces_are_told(tmp_path: Path, capsys) -> None:
     text, clip = mocap_path(CLIP).read_text(), tmp_path / "longer.bvh"
