@@ -9,5 +9,13 @@ from ..data.constants import DEFAULT_FRICTION
 def is_steep(normals: FloatArray) -> BoolArray:
     """(N,) whether faces with normals (N, 3) bear no weight by the friction that shoes have: the
     vertical is not in its cone. Undersides are among them."""
-    across = np.hypot(normals[:, 0], normals[:, 1])
-    return np.asarray(across > DEFAULT_FRICTION * normals[:, 2])
+    return np.asarray(_across(normals) > DEFAULT_FRICTION * normals[:, 2])
+
+
+def is_side(normals: FloatArray) -> BoolArray:
+    """(N,) whether faces with normals (N, 3) are steep but no undersides."""
+    return np.asarray(_across(normals) > DEFAULT_FRICTION * np.abs(normals[:, 2]))
+
+
+def _across(normals: FloatArray) -> FloatArray:
+    return np.asarray(np.hypot(normals[:, 0], normals[:, 1]))

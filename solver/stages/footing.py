@@ -16,8 +16,8 @@ from ..data.problem import MotionProblem, Pin
 from ..data.scene import SceneObject
 from ..fitting.fit import Fit
 from ..scene.boxes import still_near
-from ..scene.steep import is_steep
-from ..scene.triangle_mesh import SHEET, placed_mesh
+from ..scene.steep import is_side
+from ..scene.triangle_mesh import SHEET, TriangleMesh, placed_mesh
 from ..transcription.contact_pins import PointContact
 
 SUNK = 0.04  # m; as far as a place may be from the floor that it is put upon (grounding.py)
@@ -67,15 +67,23 @@ def check_sunk(scene: Sequence[SceneObject], schedule: ContactSchedule, footing:
         mesh = placed_mesh(thing)
         deep = mesh.heights(places[:, :2]).z - places[:, 2]
         inside = (mesh.distances(places + SUNK * UP).distance < 0.0) & (deep > SUNK)
-        out = mesh.distances(places)
-        beside = (out.distance < 0.0) & is_steep(out.normal)
-        inside &= ~(beside & (out.distance > -SUNK))
+        out = np.minimum(_way_out_beside(mesh, places), _way_out_beside(mesh, places + SUNK * UP))
+        beside = np.isfinite(out)
+        inside &= out > SUNK
         if (inside & ~beside).all():
             raise StandsBelow(thing.name, float(deep.max()))
         for i in np.flatnonzero(inside)[:1].tolist():
-            metres = -out.distance[i] if beside[i] else deep[i]
+            metres = out[i] if beside[i] else deep[i]
             name = schedule.contacts[loose[i]].name
             raise StandsIn(thing.name, name, float(metres), beside=bool(beside[i]))
+
+
+def _way_out_beside(mesh: TriangleMesh, places: FloatArray) -> FloatArray:
+    """(n,) m from places (n, 3) in a mesh out of it, where the nearest way is through a face at its
+    side; infinite elsewhere."""
+    out = mesh.distances(places)
+    beside = (out.distance < 0.0) & is_side(out.normal)
+    return np.where(beside, -out.distance, np.inf)
 
 
 def on_faces(contacts: Sequence[PointContact], footing: Footing) -> tuple[PointContact, ...]:

@@ -1,6 +1,7 @@
 """Hops in a scene: onto a crate and a slope, and onto what friction does not hold."""
 
 from contextlib import nullcontext
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -148,6 +149,23 @@ def test_who_is_at_the_face_of_a_wall_is_not_below_its_top() -> None:
         check_sunk((wall(0.06),), fitted_hop().schedule, recorded_footing())
     assert (caught.value.metres, caught.value.beside) == (pytest.approx(0.06), True)
     assert "6.0 cm behind the face at its side" in sentence(caught.value)
+
+
+def test_a_crate_s_underside_is_no_way_out_of_it() -> None:
+    """A crate that is 1 cm in the floor was let through: its nearest face is below the foot."""
+    crate = stood(0.49, (1.2, 1.2, 0.5))
+    with pytest.raises(StandsIn) as caught:
+        check_sunk((crate,), fitted_hop().schedule, recorded_footing())
+    assert (caught.value.metres, caught.value.beside) == (pytest.approx(0.49, abs=0.01), False)
+
+
+@pytest.mark.parametrize("bottom", [0.0, -0.01])
+def test_who_is_at_the_face_of_a_wall_that_ends_at_the_floor_may_stand_there(
+    bottom: float,
+) -> None:
+    high = wall(0.03)
+    lifted = high.positions + np.array([0.0, 0.0, 0.1 + bottom])  # whose bottom is at -0.1 m
+    check_sunk((replace(high, positions=lifted),), fitted_hop().schedule, recorded_footing())
 
 
 def test_a_point_that_pushes_back_at_a_wall_is_pushed_off_it() -> None:
