@@ -16,9 +16,10 @@ from ...data.problem import MotionProblem
 from ...numerics.rotations import unit
 from ...scene.boxes import still_near
 from ...scene.steep import is_steep
-from ...scene.triangle_mesh import TriangleMesh, placed_mesh
+from ...scene.triangle_mesh import Distances, TriangleMesh, placed_mesh
 
 OFF = 0.04  # m from a part's skin, within which a face is what it touches (grounding.py)
+RIM = 0.01  # m behind a steep face, clear of its edge, where a top that begins there is found
 
 
 def pushed_normals(
@@ -34,20 +35,36 @@ def pushed_normals(
     if not len(places):
         return normals
     reach = OFF + _thickness(contacts, character)
-    free = places[:, 2] > floor_m + reach
+    free = ~_riding(problem, contacts) & (places[:, 2] > floor_m + reach)
     nearest = reach.copy()
     for thing in still_near(problem.scene, places, float(reach.max())):
         mesh = placed_mesh(thing)
-        free &= ~_on_top(mesh, places, reach)
         found = mesh.distances(places)
+        at_rim = np.abs(found.distance) < reach
+        at_rim &= _on_top(mesh, _behind(places, found), reach)
+        free &= ~(at_rim | _on_top(mesh, places, reach))
         near = (np.abs(found.distance) < nearest) & is_steep(found.normal)
         normals[near], nearest[near] = found.normal[near], np.abs(found.distance)[near]
     normals[~free] = UP
-    given = {r.name: r.normal for r in problem.requests.points if r.normal is not None}
+    given = {r.name: r.normal for r in problem.requests.points if r.environment and r.normal}
     for i, contact in enumerate(contacts):
         if contact.name in given:
             normals[i] = unit(np.array(given[contact.name], dtype=float))
     return normals
+
+
+def _riding(problem: MotionProblem, contacts: Sequence[Contact]) -> BoolArray:
+    """(n,) whether contacts are on something that moves: they stand there, whatever it passes."""
+    moving = {thing.name for thing in problem.scene if thing.moves}
+    return np.array([contact.on in moving for contact in contacts])
+
+
+def _behind(places: FloatArray, found: Distances) -> FloatArray:
+    """(n, 3) m, places (n, 3) moved level to a little behind the faces that are nearest to them."""
+    level = found.normal[:, :2]
+    level = level / np.maximum(np.linalg.norm(level, axis=1, keepdims=True), 1e-9)
+    moved = (found.distance + RIM)[:, None] * level
+    return np.asarray(places - np.pad(moved, ((0, 0), (0, 1))))
 
 
 def _on_top(mesh: TriangleMesh, places: FloatArray, reach: FloatArray) -> BoolArray:
