@@ -21,9 +21,8 @@ STANDING_SPEED_UP = 0.15  # m/s, up or down, of a foot that stands, flat or not
 LOW = 0.03  # m above the floor: a foot that stands
 LEAST_STANCE = 0.1  # s
 BELOW = 0.1  # m below a foot that stands, where a hand, or a knee that kneels, may be
-HEEL_DOWN = (
-    0.5  # of its length, by which a ball may be above the ankle; of who lies on the back more
-)
+# Of a foot's length, by which its ball may be above the ankle; of who lies on the back it is more.
+HEEL_DOWN = 0.5
 ROUNDS = 8  # of narrowing the speeds to the half that agree best
 
 
