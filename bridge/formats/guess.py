@@ -56,7 +56,8 @@ def _rest_up(clip: MotionClip) -> UpAxis | None:
     """The axis along which the rest pose stands; None where it does not clearly, as where all bones
     follow one axis, or where names do not tell head and feet."""
     heads = rest_heads(clip)
-    return _standing(clip, np.concatenate([heads, heads + rest_axes(clip)])[None])
+    points = np.concatenate([heads, heads + rest_axes(clip)])[None]
+    return _standing(clip, points, _longest_path(clip))
 
 
 def _up_at_ends(clip: MotionClip, points: FloatArray) -> UpAxis | None:
@@ -66,7 +67,8 @@ def _up_at_ends(clip: MotionClip, points: FloatArray) -> UpAxis | None:
     second = max(round(1.0 / clip.frame_time), 1)
     parts = (slice(None, second), slice(-second, None))
     ends = np.concatenate([_sampled_points(clip, _sampled(clip, part)) for part in parts])
-    upright = [axis for each in ends if (axis := _standing(clip, each[None]))]
+    path = _longest_path(clip)
+    upright = [axis for each in ends if (axis := _standing(clip, each[None], path))]
     if not upright:
         return None
     tall = np.abs(_statures(clip, points)).mean(axis=0)
@@ -74,12 +76,13 @@ def _up_at_ends(clip: MotionClip, points: FloatArray) -> UpAxis | None:
     return along if 2 * upright.count(along) > len(upright) else None
 
 
-def _standing(clip: MotionClip, points: FloatArray) -> UpAxis | None:
-    """The axis along which a figure with points (S, 2J, 3) clearly stands upright; else None."""
+def _standing(clip: MotionClip, points: FloatArray, path: float) -> UpAxis | None:
+    """The axis along which a figure with points (S, 2J, 3), and so long a path along its bones,
+    clearly stands upright; else None."""
     if not all(_ends(clip)):
         return None
     stature = _stature(clip, points)
-    tall = max(UPRIGHT * float(np.linalg.norm(stature)), TALL * _longest_path(clip))
+    tall = max(UPRIGHT * float(np.linalg.norm(stature)), TALL * path)
     return next((axis for axis in get_args(UpAxis) if stature[_INDEX[axis]] > tall), None)
 
 
