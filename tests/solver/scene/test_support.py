@@ -101,6 +101,24 @@ def test_a_contact_that_is_added_where_an_object_ends_is_on_it(
     assert hand.on == on
 
 
+def test_a_contact_that_is_added_near_the_floor_is_on_what_those_that_were_found_are_on() -> None:
+    """A floor 2 cm above the recording's had a foot that was put down again step up to it."""
+    recording = load_recording(HOP_CLIP).window(*frames_of(HOP_CLIP, HOP))
+    found = hop().schedule.contacts[-1]
+    middle, end = recording.frames[0] + recording.rate * np.array(
+        [0.5 * (found.start + found.end), found.end]
+    )
+    floor = thing("Floor", box((20.0, 20.0, 1.0)), (0.0, 0.0, hop().schedule.floor_m - 0.48))
+    again = MotionProblem(
+        contacts=(ContactEdit(found.name, end_frame=middle),),
+        added=(AddedContact(found.point, middle, end),),
+        scene=(floor,),
+    )
+    halves = [c for c in analyse(recording, again).schedule.contacts if c.point == found.point]
+    assert [c.on for c in halves[-2:]] == [None, None]
+    assert abs(halves[-1].place[2] - halves[-2].place[2]) < 0.01
+
+
 @pytest.mark.parametrize(("degrees", "wall"), [(75.0, True), (0.0, False), (-60.0, False)])
 def test_no_box_is_offered_for_soles_that_point_up(degrees: float, *, wall: bool) -> None:
     """Of who stands on the toes heels are as high."""
