@@ -12,7 +12,7 @@ from ..recipe_syntax.items import BONE, WHEN, Kind, vector
 from ..recipe_syntax.points import ENVIRONMENT, PATH, POINT_AXES
 from ..rows.kind import ConstraintKind, FieldDrawing, MenuGroup, NewRange, Row
 from ..rows.row_parts import RowContext, bone_of, direction_of, offset_of, ordered_bound, scaled
-from ..rows.stored import OFFSET, Stored, boolean, booleans, choice, position, target
+from ..rows.stored import OFFSET, Stored, boolean, booleans, choice, position, target, text
 from ..rows.stored import vector as stored_vector
 from ..rows.times import when_of
 
@@ -33,6 +33,10 @@ AXIS_LABELS = {
     PointAxes.TRAVEL.name: ("Forward", "Left", "Up"),
     PointAxes.SURFACE.name: ("Along", "Across", "Out"),
 }
+
+
+USUAL_NORMAL = (0.0, 0.0, 1.0)
+OWN, NOT_OWN = "OWN", "NOT_OWN"  # what is stored of the choice of Custom Normal
 
 
 def _record(row: Row, context: RowContext) -> PointRequest:
@@ -56,6 +60,15 @@ def _record(row: Row, context: RowContext) -> PointRequest:
 def _has_normal(row: Row) -> bool:
     """Whether the artist says where the surface faces."""
     return _is_along_surface(row) or bool(row.environment and row.use_normal)
+
+
+def _get_use_normal(row: Row) -> bool:
+    """As chosen; files of earlier versions have the normal alone, which counted."""
+    return bool(row.own_normal == OWN if row.own_normal else tuple(row.normal) != USUAL_NORMAL)
+
+
+def _set_use_normal(row: Row, chosen: bool) -> None:
+    row.own_normal = OWN if chosen else NOT_OWN
 
 
 def _is_along_surface(row: Row) -> bool:
@@ -112,8 +125,8 @@ def _draw_bounds(layout: bpy.types.UILayout, row: Row) -> None:
     table = layout.column(align=True)
     table.use_property_split = False
     head = table.row(align=True)
-    for text in ("", "At Least", "At Most"):
-        head.label(text=text)
+    for title in ("", "At Least", "At Most"):
+        head.label(text=title)
     for axis, name in enumerate(AXIS_LABELS[row.axes]):
         line = table.row(align=True)
         line.prop(row, "bound_axes", index=axis, text=name, toggle=True)
@@ -191,10 +204,13 @@ KIND = ConstraintKind(
         "use_normal": boolean(
             "Custom Normal",
             "Say where what pushes back faces; else as the face of World that is there, or up",
+            get=_get_use_normal,
+            set=_set_use_normal,
         ),
+        "own_normal": text(),  # chosen of `use_normal`; "": nothing yet
         "axes": choice("Axes", AxesLabel, "The axes of the bounds"),
         "normal": stored_vector(
-            "Normal", "Out of the surface", subtype="DIRECTION", default=(0.0, 0.0, 1.0)
+            "Normal", "Out of the surface", subtype="DIRECTION", default=USUAL_NORMAL
         ),
         "use_bounds": boolean(
             "Bounds", "Keep the point within bounds about the place instead of exactly there"

@@ -50,6 +50,8 @@ class HangtimeConstraint(bpy.types.PropertyGroup):
         def __getattr__(self, name: str) -> Any: ...
         def __setattr__(self, name: str, value: Any) -> None: ...
 
+    COMPUTED = ("use_normal",)  # from what else is stored
+
     name: chosen(NAME)
     kind: bpy.props.EnumProperty(
         name="Kind", items=KIND_ITEMS, options=HIDDEN, override=OVERRIDABLE

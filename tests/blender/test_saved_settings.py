@@ -18,6 +18,7 @@ from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.repairs.analysis_key import analysis_is_of, analysis_key
 from hangtime.operators.solve.adapt import read_wanted
 from hangtime.tests.blender.helpers import stored
+from hangtime.tests.blender.helpers.rows import asked
 
 DATA = Path(__file__).parents[1] / "data"
 STEP = 3  # frames from one look at the pose to the next
@@ -51,6 +52,18 @@ def test_a_contact_still_moves_alone_where_that_was_wished(performer: bpy.types.
     """By the checkbox in whose place a choice is now."""
     assert performer.hangtime.moves == "CONTACT"
     assert bpy.data.objects["Ball"].hangtime.moves == "AUTO"
+
+
+def test_a_normal_still_counts_where_nobody_could_say_whether(performer: bpy.types.Object) -> None:
+    """The row has no bounds along the surface, and there was no Custom Normal to choose."""
+    row = performer.hangtime.constraints["Hand on wall"]
+    row.used = True
+    (wall,) = (each for each in asked(performer).points if each.name == row.name)
+    assert wall.normal == pytest.approx((0.0, 0.6, 0.8))
+    assert row.use_normal
+    row.use_normal = False
+    (wall,) = (each for each in asked(performer).points if each.name == row.name)
+    assert wall.normal is None
 
 
 @pytest.mark.usefixtures("performer")
