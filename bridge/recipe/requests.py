@@ -18,7 +18,8 @@ relative = [0, 0, 0.1]         # m off the place, in `axes`; or forward, up, lef
 at_least = { z = 0.3 }          # bounds about the place instead of the place itself; by axis:
 at_most = { z = 0.5 }           # x, y, z; forward, left, up; or along, across, out of a surface
 axes = "world"                  # or "travel", "surface"; need not be said where the names say it
-normal = [0, -1, 0]             # of the surface; else of the object's face there, or up
+normal = [0, -1, 0]             # of the surface of `axes`, or of what pushes back; else of the
+                                # object's face there, or up
 environment = true              # what is there pushes back with a force;
 grip = true                     # ... and pulls, too
 

@@ -13,6 +13,10 @@ AXIS_NAMES = {
     PointAxes.SURFACE: ("along", "across", "out"),
 }
 BOUND_KEYS = ("at_least", "at_most")
+NO_SURFACE = (
+    '"normal" is of a surface, and this point has none; add axes = "surface" where its place or '
+    "its bounds are told along one, environment = true where one pushes back, or leave it out"
+)
 
 
 def _read_axes(table: Table) -> Values:
@@ -22,6 +26,8 @@ def _read_axes(table: Table) -> Values:
     axes = _axes(table, bounds)
     values: Values = {"axes": axes}
     if "normal" in table.values:
+        if axes is not PointAxes.SURFACE and not table.flag("environment"):
+            table.refuse("normal", NO_SURFACE)
         values["normal"] = direction(table, "normal")
     if "relative" in table.values:
         values["relative"] = table.vector("relative")

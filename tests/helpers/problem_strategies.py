@@ -87,12 +87,15 @@ FREE = st.just((None, None))
 POINT_BOUNDS = st.tuples(*[FREE | bounds_of(NUMBERS)] * 3).filter(lambda b: any(map(any, b)))
 PLACES = st.just({}) | st.builds(dict, place=VECTORS) | st.builds(dict, path=PATHS)
 GRIPS = st.sampled_from([{}, {"environment": True}, {"environment": True, "grip": True}])
-SURFACES = st.builds(dict, axes=st.sampled_from(PointAxes), normal=DIRECTIONS)
+AXES = st.sampled_from(PointAxes)
+# A normal is of a surface that places and bounds are told along, or that pushes back.
+SURFACES = st.builds(dict, axes=st.just(PointAxes.SURFACE), normal=DIRECTIONS)
+WALLS = st.builds(dict, axes=AXES, normal=DIRECTIONS, environment=st.just(value=True))
 POINTS = st.builds(
-    lambda place, grip, axes, **rest: PointRequest(**rest, **place, **grip, **axes),
+    lambda place, grip, axes, **rest: PointRequest(**rest, **place, **(grip | axes)),
     place=PLACES,
     grip=GRIPS,
-    axes=SURFACES | st.builds(dict, axes=st.sampled_from(PointAxes)),
+    axes=SURFACES | WALLS | st.builds(dict, axes=AXES),
     name=NAMES,
     bone=NAMES,
     when=WHENS,

@@ -68,6 +68,7 @@ WRONG = [  # what stands in FULL, and what it is replaced by, whose last line is
     ("at_most = { left = 0.2, up = 0.9 }", "at_most = { left = 0.2, up = 0.2 }"),
     ("at_most = { left = 0.2, up = 0.9 }", 'at_most = { left = "0.2" }'),
     ("normal = [0, -1, 0]", "normal = [0, 0, 0]"),
+    ("normal = [0, -1, 0]\nat_most = { out = 0.01 }", "relative = [1, 2, 3]\nnormal = [0, -1, 0]"),
     ("{ frame = 110, place = [0, 0, 2] }", "{ frame = 90, place = [0, 0, 2] }"),
     ("{ frame = 110, place = [0, 0, 2] }", "{ frame = 110 }"),
     ("{ frame = 110, place = [0, 0, 2] }", "{ place = [0, 0, 2] }"),
@@ -145,6 +146,14 @@ def test_what_is_no_toml_is_quoted_with_what_was_probably_meant(line: str, told:
 
 def test_nothing_is_guessed_of_what_stands_behind_a_value() -> None:
     assert refused("frames = [1, 9] m").problem.endswith("correct it")
+
+
+def test_a_normal_that_would_do_nothing_is_refused_with_what_it_is_of() -> None:
+    """Of earlier versions it turned "relative" along a surface."""
+    point = '[[point]]\nbone = "a"\nrelative = [0, 0, 0.1]\nnormal = [0, 1, 0]'
+    assert 'add axes = "surface"' in refused(point).problem
+    for use in ("environment = true", 'axes = "surface"'):
+        assert parse_recipe(f"{point}\n{use}").problem.requests.points[0].normal == (0, 1, 0)
 
 
 @pytest.mark.parametrize(("old", "new"), WRONG)

@@ -17,6 +17,8 @@ from hangtime.tests.helpers.full_recipe import FULL, REQUESTS
 from hangtime.tests.helpers.problem_strategies import KINDS, PROBLEMS
 from hypothesis import given, settings
 
+PUSHES_BACK = "normal = [1, 0, 0]\nenvironment = true"
+
 
 def test_every_key_is_read() -> None:
     assert parse_recipe(FULL).problem.requests == REQUESTS
@@ -89,8 +91,8 @@ def test_what_was_not_asked_is_not_written() -> None:
         ('axes = "travel"\nrelative = [1, 2, 3]', PointAxes.TRAVEL, (1.0, 2.0, 3.0)),
         ("at_most = { z = 1 }", PointAxes.WORLD, (0.0, 0.0, 0.0)),
         ("at_most = { along = 1 }", PointAxes.SURFACE, (0.0, 0.0, 0.0)),
-        ("relative = [1, 2, 3]\nnormal = [1, 0, 0]", PointAxes.WORLD, (1.0, 2.0, 3.0)),
-        ("left = 2\nnormal = [1, 0, 0]", PointAxes.TRAVEL, (0.0, 2.0, 0.0)),
+        (f"relative = [1, 2, 3]\n{PUSHES_BACK}", PointAxes.WORLD, (1.0, 2.0, 3.0)),
+        (f"left = 2\n{PUSHES_BACK}", PointAxes.TRAVEL, (0.0, 2.0, 0.0)),
     ],
 )
 def test_axes_follow_from_the_names_of_axes(keys: str, axes: PointAxes, relative: tuple) -> None:
