@@ -17,10 +17,12 @@ WALL = thing("Wall", box((3.0, 0.2, 3.0)), (0.0, -0.1, 1.5), role=SceneRole.OBST
 CRATE = thing("Crate", box((1.0, 1.0, 0.8)), (0.0, 0.5, 0.4))
 
 
-def normal_at(place: Vector, *, asked: Vector | None = None) -> tuple[float, ...]:
+def normal_at(
+    place: Vector, *, asked: Vector | None = None, pushes_back: bool = True
+) -> tuple[float, ...]:
     """Of the hop's first contact, were it there."""
     schedule, contact = hop().schedule, hop().schedule.contacts[0]
-    point = PointRequest(contact.name, contact.bone, When(), normal=asked, environment=True)
+    point = PointRequest(contact.name, contact.bone, When(), normal=asked, environment=pushes_back)
     problem = MotionProblem(requests=Requests(points=(point,)), scene=(WALL, CRATE))
     floor, character = schedule.floor_m, hop().performance.character
     (found,) = pushed_normals(
@@ -61,6 +63,9 @@ def test_what_rides_on_a_lift_stands_there_whatever_it_passes() -> None:
 def test_what_the_artist_says_counts() -> None:
     assert normal_at((0.0, 0.03, 1.5), asked=(0.0, 0.0, 2.0)) == pytest.approx(UP)
     assert normal_at((0.0, 0.3, 1.5), asked=(1.0, 0.0, 0.0)) == pytest.approx((1.0, 0.0, 0.0))
+
+    bounded = normal_at((0.0, 0.3, 1.5), asked=(1.0, 0.0, 0.0), pushes_back=False)
+    assert bounded == pytest.approx(UP)  # of a point that has a contact's name alone
 
 
 def test_a_motion_without_contacts_pushes_against_nothing() -> None:
