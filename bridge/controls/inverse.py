@@ -266,7 +266,10 @@ class Inverse:
             now = measured(self._posing, animated, groups)
             self.tries += len(groups)
             felt = movers(now) | self._moving.get(acts.tobytes(), False)
-            self._use(self._every.of_controls(felt), now.of_controls(felt))
+            # Where none does anything, such as while a rig follows another, all are solved for:
+            # they stay as they are, and what bodies lack is told.
+            used = felt if felt.any() else np.ones_like(felt)
+            self._use(self._every.of_controls(used), now.of_controls(used))
             self._offsets[~felt] = 0.0
             self._change = np.zeros_like(self._offsets)
             self._felt = felt
