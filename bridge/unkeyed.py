@@ -1,7 +1,8 @@
 """Channels that a recording leaves alone: where a result of it has keys, from the start or by hand
 later, Blender leaves them as that result had them.
 
-So a result knows what they are in its recording, and whoever stops performing it gets them back.
+So a result knows what they are in its recording, and whoever stops performing it gets those back
+that only the result has keys for.
 """
 
 from __future__ import annotations
@@ -42,17 +43,28 @@ def note_unkeyed(
     result[_RECORDING] = recording
 
 
-def put_back(owner: bpy.types.Object, result: bpy.types.Action) -> None:
-    """Give `owner`, which performed a result, what only this has keys for as its recording has it;
-    bones and properties that are gone meanwhile have none. Others stay as the artist set them."""
-    values = list(_given_back(owner, result))
-    for (path, name, index), value in values:
-        try:
-            _put(owner.path_resolve(path) if path else owner, name, index, value)
-        except (ValueError, AttributeError, LookupError, TypeError):
-            continue
-    if values:
-        owner.update_tag()  # of custom properties Blender does not notice it
+class PutBack:
+    """Gives `owner`, which performed a result, what only this has keys for as its recording has it;
+    bones and properties that are gone meanwhile have none. Others stay as the artist set them.
+
+    What that is it looks for in all curves, once of each result: one serves for the slices of a
+    reading, and no longer.
+    """
+
+    def __init__(self) -> None:
+        self._found: dict[int, dict[_Channel, float]] = {}  # by the results' numbers in the session
+
+    def __call__(self, owner: bpy.types.Object, result: bpy.types.Action) -> None:
+        uid = result.session_uid
+        if uid not in self._found:
+            self._found[uid] = dict(_given_back(owner, result))
+        for (path, name, index), value in self._found[uid].items():
+            try:
+                _put(owner.path_resolve(path) if path else owner, name, index, value)
+            except (ValueError, AttributeError, LookupError, TypeError):
+                continue
+        if self._found[uid]:
+            owner.update_tag()  # of custom properties Blender does not notice it
 
 
 def _given_back(
@@ -141,7 +153,10 @@ def _put(holder: Any, name: str, index: int, value: float) -> None:
     key = bpy.utils.unescape_identifier(name[2:-2]) if custom else name
     held = holder[key] if custom else getattr(holder, name)
     if hasattr(held, "__len__"):
-        held[index] = type(held[index])(value)
+        if held[index] != value:  # whatever is set has Blender go through the armature anew
+            held[index] = type(held[index])(value)
+    elif held == value:
+        return
     elif custom:
         holder[key] = type(held)(value)
     else:

@@ -19,7 +19,7 @@ from ..accessors import (
     root_of,
 )
 from ..properties.settings import settings_of
-from ..unkeyed import note_unkeyed
+from ..unkeyed import PutBack, note_unkeyed
 from . import fcurves
 from .incremental import Incremental, complete
 from .played import adopt_strip, playing_strip
@@ -78,7 +78,7 @@ def recorded_frames(
 
 def showing_recorded(armature: bpy.types.Object) -> Callable[[], AbstractContextManager[None]]:
     """Contexts in which the armature performs the recording, whichever action is shown."""
-    return partial(showing_action, armature, recorded_action(armature))
+    return slices_showing(armature, recorded_action(armature))
 
 
 def recorded_poses(armature: bpy.types.Object, frames: FloatArray) -> Poses:
@@ -127,10 +127,20 @@ def _note_again(
         note_unkeyed(armature, result, shown, recording)
 
 
+def slices_showing(
+    armature: bpy.types.Object, action: bpy.types.Action | None
+) -> Callable[[], AbstractContextManager[None]]:
+    """Contexts as of `showing_action`, for the slices of one reading."""
+    return partial(showing_action, armature, action, PutBack())
+
+
 @contextmanager
-def showing_action(armature: bpy.types.Object, action: bpy.types.Action | None) -> Iterator[None]:
+def showing_action(
+    armature: bpy.types.Object, action: bpy.types.Action | None, put_back: PutBack | None = None
+) -> Iterator[None]:
     """Context in which the armature performs `action`, where a strip plays it elsewhere than at its
-    own frames in that strip; afterwards what it performed before."""
+    own frames in that strip; afterwards what it performed before. put_back: knows what that has
+    keys for, from other such contexts."""
     assigned = assigned_action(armature)
     if action == assigned and assigned is not None:
         yield
@@ -138,14 +148,15 @@ def showing_action(armature: bpy.types.Object, action: bpy.types.Action | None) 
     slot = fcurves.slot_identifier(armature)
     strip = mapped_strip(armature, action) if action is not None else None
     if strip is not None:
-        with playing_strip(armature, strip):
+        with playing_strip(armature, strip, put_back):
             yield
         evaluate()
         return
-    with without_strips(armature):
-        fcurves.assign(armature, action, slot)
+    put_back = put_back or PutBack()
+    with without_strips(armature, put_back):
+        fcurves.assign(armature, action, slot, put_back)
         try:
             yield
         finally:
-            fcurves.assign(armature, assigned, slot)
+            fcurves.assign(armature, assigned, slot, put_back)
     evaluate()

@@ -18,7 +18,7 @@ from ...solver.arrays import FloatArray
 from ..accessors import current_action, take_strips
 from ..action_slots import bag_of, home_of, keyframe_strip, recorded_slot
 from ..played_strips import played_strip
-from ..unkeyed import put_back
+from ..unkeyed import PutBack
 from .incremental import note_made_action
 
 CurveHolder: TypeAlias = "bpy.types.Action | bpy.types.ActionChannelbag"  # 4.2 has no channelbags
@@ -96,17 +96,21 @@ def slot_identifier(owner: bpy.types.Object) -> str | None:
 
 
 def assign(
-    owner: bpy.types.Object, action: bpy.types.Action | None, slot: str | None = None
+    owner: bpy.types.Object,
+    action: bpy.types.Action | None,
+    slot: str | None = None,
+    put_back: PutBack | None = None,
 ) -> None:
     """Let `action` animate `owner`, through the slot of that identifier where there are slots.
 
     Without such a slot the first that fits the kind of `owner` is taken. A result that is a slot is
-    shown by this. What only the result that is left has keys for is as before it.
+    shown by this. What only the result that is left has keys for is as before it: `put_back` has it
+    so, one of its own where none is given.
     """
     data = owner.animation_data or owner.animation_data_create()
     left = current_action(owner)
     if left is not None and left != action:
-        put_back(owner, left)
+        (put_back or PutBack())(owner, left)
     home = home_of(action) if action is not None else None
     if home is not None:
         data.action, data.action_slot = home

@@ -33,6 +33,7 @@ from ..played_strips import (
     visible_strips,
     why_unread,
 )
+from ..unkeyed import PutBack
 from . import fcurves
 from .incremental import note_made_action
 
@@ -133,9 +134,11 @@ def adopt_strip(owner: bpy.types.Object, action: bpy.types.Action) -> None:
 
 
 @contextmanager
-def playing_strip(owner: bpy.types.Object, strip: bpy.types.NlaStrip) -> Iterator[None]:
+def playing_strip(
+    owner: bpy.types.Object, strip: bpy.types.NlaStrip, put_back: PutBack | None = None
+) -> Iterator[None]:
     """Context in which of the assigned action, the takes' strips and what lies above only this one
-    is seen."""
+    is seen. put_back: as of `fcurves.assign`."""
     data = owner.animation_data
     assert data is not None
     assigned, slot = assigned_action(owner), fcurves.slot_identifier(owner)
@@ -145,7 +148,7 @@ def playing_strip(owner: bpy.types.Object, strip: bpy.types.NlaStrip) -> Iterato
     muting: list[bpy.types.NlaTrack | bpy.types.NlaStrip] = [own, strip]
     muting += [track for track in every if track != own and (track in above or track in takes)]
     muted = [(each, each.mute) for each in muting]
-    fcurves.assign(owner, None)
+    fcurves.assign(owner, None, put_back=put_back)
     try:
         for each, _ in muted:
             each.mute = each not in (own, strip)
@@ -153,7 +156,7 @@ def playing_strip(owner: bpy.types.Object, strip: bpy.types.NlaStrip) -> Iterato
     finally:
         for each, mute in muted:
             each.mute = mute
-        fcurves.assign(owner, assigned, slot)
+        fcurves.assign(owner, assigned, slot, put_back)
 
 
 def scene_copy(owner: bpy.types.Object, action: bpy.types.Action, name: str) -> bpy.types.Action:

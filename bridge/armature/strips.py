@@ -27,7 +27,7 @@ from ..accessors import (
 )
 from ..action_slots import all_curves, home_of, span_of
 from ..marked_strips import Strips, set_seen
-from ..unkeyed import put_back
+from ..unkeyed import PutBack
 from . import fcurves
 
 _SAME = 1e-3  # frames
@@ -209,7 +209,7 @@ def show_strip(owner: bpy.types.Object, action: bpy.types.Action) -> None:
             set_seen(track, strip, take in seen)
     mark_strips(owner)
     if left is not None and left != action:
-        put_back(owner, left)
+        PutBack()(owner, left)
 
 
 def remove_strips(owner: bpy.types.Object, action: bpy.types.Action) -> None:
@@ -238,8 +238,9 @@ def remove_strips_but(owner: bpy.types.Object, kept: Set[int]) -> None:
 
 
 @contextmanager
-def without_strips(owner: bpy.types.Object) -> Iterator[None]:
-    """Context in which no strip of the takes of `owner` is seen."""
+def without_strips(owner: bpy.types.Object, put_back: PutBack) -> Iterator[None]:
+    """Context in which no strip of the takes of `owner` is seen. put_back: has what only the result
+    that is left has keys for as before it."""
     tracks = [(track, track.mute) for track, _ in take_strips(owner)]
     left = current_action(owner)
     for track, _ in tracks:

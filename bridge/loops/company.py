@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 
 import bpy
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from ...solver.arrays import FloatArray
 from ..accessors import armature_data
 from ..armature import fcurves
-from ..armature.actions import showing_action
+from ..armature.actions import slices_showing
 from ..armature.incremental import Incremental, sample_incrementally
 from ..armature.poses import Poses
 from ..companions.found import Companions
@@ -35,7 +34,7 @@ def keep_followers(
     if not company.followers:
         return company
     action.update_tag()
-    showing = partial(showing_action, armature, action)
+    showing = slices_showing(armature, action)
     now = yield from sample_incrementally(armature, frames, showing)
     bases = following_bases(armature, company.followers, _closed(poses), now)
     left = {name for name, basis in bases.items() if differs(armature, now, name, basis)}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import partial
 
 import bpy
 import numpy as np
@@ -14,7 +13,7 @@ from ...solver.data.recording import PoseTrack
 from ..accessors import armature_data, current_scene, pose_of, present, root_of
 from ..action_slots import all_curves
 from ..armature import fcurves
-from ..armature.actions import note_take, recorded_action, show, showing_action
+from ..armature.actions import note_take, recorded_action, show, slices_showing
 from ..armature.channels import channels, proper
 from ..armature.incremental import Incremental, sample_incrementally
 from ..armature.played import scene_copy
@@ -117,7 +116,7 @@ def write_loop(
     bones among them, such as fingers, give up evenly what they end away from their start.
     Raises NoControls.
     """
-    showing = partial(showing_action, armature, recorded)
+    showing = slices_showing(armature, recorded)
     frames, bodies = loop.track.frames, loop.track.bones
     poses = yield from sample_incrementally(armature, frames, showing)
     rig = None
@@ -219,7 +218,7 @@ def _write_controls(
     The curves are settled: what the controls are solved from ends as it begins.
     """
     frames, armature = loop.track.frames, rig.armature
-    showing = partial(showing_action, armature, action)
+    showing = slices_showing(armature, action)
     action.update_tag()
     poses = yield from sample_incrementally(armature, frames, showing)
     bases = (yield from control_poses(rig, poses, loop.in_place, showing)).bases
@@ -244,7 +243,7 @@ def _write_controls(
 def _kept(rig: ControlRig, action: bpy.types.Action, loop: Loop) -> Incremental[KeptByControls]:
     """How near the bodies are to the cycle, as Blender shows the action."""
     action.update_tag()
-    showing = partial(showing_action, rig.armature, action)
+    showing = slices_showing(rig.armature, action)
     shown = yield from sample_incrementally(rig.armature, loop.track.frames, showing)
     track = loop.track if loop.travels else loop.in_place
     return kept_by(shown, targets_of(rig.armature, shown, track), len(rig.used))

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
-from functools import partial
 
 import bpy
 import numpy as np
@@ -16,7 +15,7 @@ from ...solver.data.reports.keys import BlendReport
 from ..accessors import current_scene
 from ..action_slots import all_curves
 from ..armature import fcurves
-from ..armature.actions import note_take, showing_action
+from ..armature.actions import note_take, slices_showing
 from ..armature.incremental import Incremental, sample_incrementally
 from ..armature.pose_basis import pose_bases
 from ..armature.poses import Poses, frames_per_second, metres_per_unit
@@ -57,9 +56,10 @@ class _Copy:
     plan: Plan
     seen: tuple[str, ...] | None
 
-    def showing(self) -> AbstractContextManager[None]:
-        """Context in which the armature performs it."""
-        return showing_action(self.armature, self.action)
+    @property
+    def showing(self) -> Callable[[], AbstractContextManager[None]]:
+        """Contexts in which the armature performs it, for the slices of one reading."""
+        return slices_showing(self.armature, self.action)
 
     def poses(self) -> Incremental[tuple[Poses, Poses | None]]:
         """As its keys are now: at the body's frames, and at those that follow, if there are any."""
@@ -103,7 +103,7 @@ def write_take(
     assert curves is not None
     bones = motion.track.bones
     rig = yield from _controls(armature, action, motion)
-    showing = partial(showing_action, armature, action)
+    showing = slices_showing(armature, action)
     apart = () if rig is None else tuple(rig.used)
     company = yield from found_companions(armature, curves, bones, apart, showing)
     roots, following = company_channels(armature, curves, company, motion.moved)
@@ -181,7 +181,7 @@ def _steady(
 ) -> Incremental[tuple[dict[str, FloatArray], dict[OwnedChannel, FloatArray]]]:
     """The bases of bones that hold joints, steady; and their channels, with these at rest."""
     armature, bones = copy.armature, motion.track.bones
-    recording, frames = partial(showing_action, armature, take), motion.recorded_frames
+    recording, frames = slices_showing(armature, take), motion.recorded_frames
     steady = yield from steady_bases(armature, poses, bones, frames, recording, copy.plan.shares)
     channels = tuple(steady_channels(armature, copy.curves, bones, steady))
     with copy.showing():
@@ -244,7 +244,7 @@ def _controls(
     """The controls of a rig whose bodies follow such, as they are in the take's copy."""
     if not is_driven(armature, motion.track.bones):
         return None
-    frames, showing = motion.recorded_frames, partial(showing_action, armature, action)
+    frames, showing = motion.recorded_frames, slices_showing(armature, action)
     return (yield from found_controls(armature, motion.track.bones, frames, showing))
 
 

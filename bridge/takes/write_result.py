@@ -4,7 +4,6 @@ strips over the take's, or slots (Blender 4.4) beside it."""
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 
 import bpy
 
@@ -12,7 +11,7 @@ from ...solver.data.faults import NoNewSlot
 from ..accessors import ATTRIBUTE, current_action, present, root_of, source_of
 from ..action_slots import all_curves, bag_of, home_of, settle
 from ..armature import fcurves
-from ..armature.actions import note_take, recorded_action, show, showing_action
+from ..armature.actions import note_take, recorded_action, show, slices_showing
 from ..armature.incremental import Incremental, complete
 from ..armature.played import in_scene_time, scene_copy
 from ..armature.strips import lay_strips
@@ -146,7 +145,7 @@ def _write(
     if cut_off and not (
         is_driven(armature, bones) or _has_company(armature, recorded, slot, bones)
     ):
-        showing = partial(showing_action, armature, recorded)
+        showing = slices_showing(armature, recorded)
         cut = yield from write_incrementally(
             armature,
             motion.track,

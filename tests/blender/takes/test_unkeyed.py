@@ -7,10 +7,12 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
+from hangtime.bridge import unkeyed as unkeyed_channels
 from hangtime.bridge.accessors import current_action
+from hangtime.bridge.action_slots import all_curves
 from hangtime.bridge.armature import fcurves
-from hangtime.bridge.armature.actions import recorded_poses
-from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.armature.actions import recorded_poses, showing_recorded
+from hangtime.bridge.armature.incremental import complete, sample_incrementally
 from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.polish.samples import edited_action
@@ -144,6 +146,26 @@ def test_polish_of_what_the_take_has_no_keys_for_is_not_on_the_take(
     show_take(armature, result)
     bpy.context.scene.frame_set(25)
     assert unkeyed(armature) != were
+
+
+def test_what_a_result_has_keys_for_alone_is_looked_for_once_in_all_slices_of_a_reading(
+    armature: bpy.types.Object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    let_be_polished(armature)
+    before = sample(armature, FRAMES)
+    polish(armature, adapted(armature, WrittenAs.ACTION))
+    reading, looked = sample_incrementally(armature, FRAMES, showing_recorded(armature)), []
+
+    def look(action: bpy.types.Action) -> list[bpy.types.FCurve]:
+        looked.append(action.name)
+        return all_curves(action)
+
+    monkeypatch.setattr(unkeyed_channels, "all_curves", look)
+    next(reading)
+    once = list(looked)
+    np.testing.assert_array_equal(complete(reading).matrices, before.matrices)
+    assert once
+    assert looked == once
 
 
 def test_what_is_set_by_hand_where_nothing_has_keys_stays(armature: bpy.types.Object) -> None:
