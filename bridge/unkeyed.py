@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from math import isfinite
 from typing import Any
 
 import bpy
@@ -35,9 +36,14 @@ def note_unkeyed(
     recording: bpy.types.Action,
 ) -> None:
     """Keep with a result what the recording that it goes back to leaves alone, as `owner` has it,
-    which performs that or another result of it; what only this one has keys for is as it knows."""
+    which performs that or another result of it; what only this one has keys for is as it knows.
+    Numbers that are not finite, as of custom properties, JSON cannot hold: they are left out."""
     keyed = _keyed(recording)
-    values = {channel: value for channel, value in _set_in(owner) if channel not in keyed}
+    values = {
+        channel: value
+        for channel, value in _set_in(owner)
+        if channel not in keyed and isfinite(value)
+    }
     values |= dict(_given_back(owner, performed))
     result[UNKEYED.name] = json.dumps([(*channel, value) for channel, value in values.items()])
     result[_RECORDING] = recording

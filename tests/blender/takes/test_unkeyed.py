@@ -127,6 +127,18 @@ def unkeyed(armature: bpy.types.Object) -> list[object]:
     return [value[index] if hasattr(value, "__len__") else value for value, index in found]
 
 
+@pytest.mark.parametrize("odd", [np.inf, np.nan])
+def test_a_property_that_is_no_finite_number_leaves_the_others_as_they_were(
+    armature: bpy.types.Object, odd: float
+) -> None:
+    let_be_polished(armature)
+    armature.pose.bones["hips"]["odd"] = odd
+    take, were = current_action(armature), unkeyed(armature)
+    polish(armature, adapted(armature, WrittenAs.ACTION))
+    show_take(armature, take)
+    assert unkeyed(armature) == were
+
+
 @pytest.mark.parametrize("written_as", [WrittenAs.ACTION, WrittenAs.STRIP, WrittenAs.COMBINE])
 def test_polish_of_what_the_take_has_no_keys_for_is_not_on_the_take(
     armature: bpy.types.Object, written_as: WrittenAs
