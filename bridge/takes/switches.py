@@ -13,25 +13,27 @@ from ...solver.arrays import BoolArray, FloatArray
 from .take_time import TakeTime
 
 EPSILON = 1e-4  # frames
-_MOST_STEPS = 2
+MOST_STEPS = 2
 _LEVEL = 1e-6  # share of the largest value, or of 1, by which values are still the same
 
 
 def on_whole_frames(at: FloatArray, values: FloatArray, time: TakeTime) -> FloatArray:
     """Result frames (n,) of a take's keys, of values (n,) at frames (n,): those of a switch are on
-    neighbouring whole frames there, too. Where durations shrink such that one has no room before
-    the next key, it is where the take's time has it."""
+    neighbouring whole frames there, too. Where durations shrink such that one has no room between
+    the keys beside it, it is where the take's time has it."""
     found = time.to_result(at)
     for first, last in _runs(_changing(values) & _neighbours(at)):
+        before = found[first - 1] if first else -np.inf
+        after = found[last + 1] if last + 1 < len(at) else np.inf
         middle = (found[first] + found[last]) / 2.0
         begin = np.round(middle - (last - first) / 2.0)
         if at[first] <= time.recorded[0] or at[last] >= time.recorded[-1]:
             kept = first if at[first] <= time.recorded[0] else last
             begin = np.round(found[kept]) - (kept - first)  # no duration changes there
-        elif first:
-            begin = max(begin, np.floor(found[first - 1] + EPSILON) + 1.0)
+        else:
+            begin = max(begin, np.floor(before + EPSILON) + 1.0)
         end = begin + last - first
-        if last + 1 == len(at) or end + EPSILON < found[last + 1]:
+        if before + EPSILON < begin and end + EPSILON < after:
             found[first : last + 1] = np.arange(begin, end + 1.0)
     return found
 
@@ -59,4 +61,4 @@ def _runs(steps: BoolArray) -> list[tuple[int, int]]:
     """First and last key of each few steps (n - 1,) in a row."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], steps, [False]])))
     runs = zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
-    return [(first, last) for first, last in runs if last - first <= _MOST_STEPS]
+    return [(first, last) for first, last in runs if last - first <= MOST_STEPS]
