@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...solver.arrays import FloatArray
 from ..armature import fcurves
 from ..armature.fcurves import KeyTable, joined, linear_keys, put, table
-from .switches import EPSILON, on_whole_frames, switched
+from .switches import EPSILON, MOST_STEPS, on_whole_frames, switched
 from .take_time import TakeTime
 
 FEWEST_BAKED = 4  # keys side by side; two or three are a blink or a switch
@@ -47,10 +47,12 @@ def retime(curve: bpy.types.FCurve, time: TakeTime) -> None:
 
 def _seen(curve: bpy.types.FCurve, frames: FloatArray) -> FloatArray:
     """The take's frames (T,) of which a baked curve's values are shown: the nearest whole one
-    where it is switched, which it is half of nowhere."""
+    where it is switched, which it is half of nowhere. Of a motion that begins or ends beside them
+    so much is looked at that it is seen to be none."""
     if not len(frames):
         return frames
-    around = np.arange(np.floor(frames[0]) - 1.0, np.ceil(frames[-1]) + 2.0)
+    beside = MOST_STEPS + 1
+    around = np.arange(np.floor(frames[0]) - beside, np.ceil(frames[-1]) + beside + 1.0)
     thrown = switched(np.array([curve.evaluate(f) for f in around]))
     interval = (np.floor(frames) - around[0]).astype(int)
     return np.where(thrown[interval], np.round(frames), frames)

@@ -13,6 +13,8 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.rows.choices import After
+from hangtime.bridge.takes.key_splice import retime
+from hangtime.bridge.takes.take_time import TakeTime
 from hangtime.bridge.takes.write_result import write_result
 from hangtime.solver.numerics.rotations import axis_rotation, rotation_vector
 from hangtime.tests.blender.helpers import rigs
@@ -83,6 +85,22 @@ def test_a_switch_is_half_thrown_on_no_whole_frame(keyed: dict[int, float]) -> N
     shown = np.array([curve.evaluate(frame) for frame in range(1, LAST + 4)])
     assert {0.0, 1.0} == set(shown.round(5).tolist())
     assert np.count_nonzero(np.diff(shown)) == np.count_nonzero(np.diff(list(keyed.values())))
+
+
+@pytest.mark.parametrize("start", [23, 24, 25])
+def test_a_motion_at_the_end_of_what_is_retimed_is_no_switch(start: int) -> None:
+    rigs.reset()
+    moved = bpy.data.objects.new("Moved", None)
+    for frame in range(60):
+        moved.location.x = 0.1 * np.clip(frame - start, 0, 30)
+        moved.keyframe_insert("location", index=0, frame=frame)
+    (curve,) = fcurves.curves_of(moved)
+    for key in curve.keyframe_points:
+        key.interpolation = "LINEAR"
+    time, frames = TakeTime(np.array([10.0, 20.0, 26.0]), np.array([10.0, 22.6, 29.0])), range(30)
+    wanted = [curve.evaluate(frame) for frame in time.to_recorded(np.array(frames))]
+    retime(curve, time)
+    assert [curve.evaluate(frame) for frame in frames] == pytest.approx(wanted, abs=1e-5)
 
 
 def test_sparse_curves_keep_their_keys_and_what_is_between_them() -> None:
