@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Set
+from collections.abc import Iterable, Sequence, Set
+from dataclasses import dataclass
 from time import perf_counter
 from zlib import crc32
 
@@ -23,62 +24,90 @@ def keys_digest(action: bpy.types.Action) -> str:
     """A number for all that shapes an action's curves: keys, the handles and easings that count
     between them, modifiers, and how curves go on beyond their keys; another where something
     differs."""
-    found = 0
-    for curve in all_curves(action):
-        found = curve_digest(curve, found)
-    return str(found)
+    return str(_added(_NOTHING, all_curves(action)).digest)
+
+
+@dataclass(frozen=True)
+class _Found:
+    """Of an action's first curves: how many, how many modifiers they have, and their digest."""
+
+    curves: int
+    modifiers: int
+    digest: int
+
+
+_NOTHING = _Found(0, 0, 0)
 
 
 class KeptDigests:
     """Digests of actions' keys that are found once, in parts; by the actions' numbers in this
     session.
 
-    Whoever keeps them for longer than nothing can change forgets them when keys may be others.
+    Whoever keeps them for longer than nothing can change forgets them when keys may be others. Of
+    new modifiers Blender tells nobody: what is found looks how many there are.
     """
 
     def __init__(self) -> None:
-        self._found: dict[int, str] = {}
-        self._part: tuple[int, int, int] = (0, 0, 0)  # of which action, how many curves, digest
+        self._found: dict[int, _Found] = {}
+        self._part: tuple[int, _Found] = (0, _NOTHING)  # of which action, of its first curves
+        self._as_found: set[int] = set()  # which have as many modifiers, in what is under way
         self._under_way = False
 
     def of(self, action: bpy.types.Action) -> str:
         """The digest of an action's keys, which is found now where it is not known."""
         uid = action.session_uid
         if uid not in self._found:
-            self._found[uid] = keys_digest(action)
-        return self._found[uid]
+            self._found[uid] = _added(_NOTHING, all_curves(action))
+        return str(self._found[uid].digest)
 
     def find(self, actions: Iterable[bpy.types.Action]) -> bool:
         """Go on with the digests of actions, for a slice's time; whether all are known."""
         until = perf_counter() + SLICE_S
         self._under_way = not all(self._is_found(action, until) for action in actions)
+        if not self._under_way:
+            self._as_found.clear()
         return not self._under_way
 
     def _is_found(self, action: bpy.types.Action, until: float) -> bool:
-        """Whether an action's digest is known by an instant, s, of Python's performance counter; at
-        least one curve is added."""
+        """Whether an action's digest is known, and it is before an instant, s, of Python's
+        performance counter; at least one curve is added."""
         uid = action.session_uid
-        if uid in self._found:
+        if uid in self._as_found:
             return True
-        of, done, found = self._part
-        if of != uid:
-            done = found = 0
         curves = all_curves(action)
-        for curve in curves[done:]:
-            done, found = done + 1, curve_digest(curve, found)
-            if perf_counter() > until:
-                break
-        self._part = uid, done, found
-        if done >= len(curves):
-            self._found[uid] = str(found)
-        return done >= len(curves)
+        if uid not in self._found or self._found[uid].modifiers != _modifiers(curves):
+            self._found.pop(uid, None)
+            of, before = self._part
+            part = _added(before if of == uid else _NOTHING, curves, until)
+            if part.curves < len(curves):
+                self._part = uid, part
+                return False
+            self._part, self._found[uid] = (0, _NOTHING), part
+        self._as_found.add(uid)
+        return perf_counter() < until
 
     def forget(self) -> bool:
         """Keys may be others now. Returns whether their digests were being found."""
         self._found.clear()
-        self._part = 0, 0, 0
+        self._as_found.clear()
+        self._part = 0, _NOTHING
         under_way, self._under_way = self._under_way, False
         return under_way
+
+
+def _added(before: _Found, curves: Sequence[bpy.types.FCurve], until: float = np.inf) -> _Found:
+    """With more of an action's curves, at least one, until an instant, s; or with all."""
+    done, modifiers, digest = before.curves, before.modifiers, before.digest
+    for curve in curves[done:]:
+        done, modifiers = done + 1, modifiers + len(curve.modifiers)
+        digest = curve_digest(curve, digest)
+        if perf_counter() > until:
+            break
+    return _Found(done, modifiers, digest)
+
+
+def _modifiers(curves: Iterable[bpy.types.FCurve]) -> int:
+    return sum(len(curve.modifiers) for curve in curves)
 
 
 def curve_digest(curve: bpy.types.FCurve, found: int = 0) -> int:

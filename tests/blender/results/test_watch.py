@@ -57,7 +57,16 @@ def add_curve(action: bpy.types.Action) -> None:
     bpy.context.view_layer.update()
 
 
-@pytest.mark.parametrize("change", [change_key, change_all, change_and_go, add_curve])
+def add_modifier(action: bpy.types.Action) -> None:
+    """Of which Blender tells nobody."""
+    holders_of(action)[0].fcurves[0].modifiers.new("NOISE")
+    bpy.context.view_layer.update()
+
+
+CHANGES = (change_key, change_all, change_and_go, add_curve, add_modifier)
+
+
+@pytest.mark.parametrize("change", CHANGES)
 @pytest.mark.parametrize("of", ["result", "take that nothing performs"])
 def test_a_look_sees_whatever_changed_keys_since_the_last(
     adapted: bpy.types.Object, change: Callable[[bpy.types.Action], None], of: str
