@@ -49,6 +49,13 @@ def note_unkeyed(
     result[_RECORDING] = recording
 
 
+def note_copied(result: bpy.types.Action, recording: bpy.types.Action) -> None:
+    """Let a copied result, where it knows what its recording leaves alone, know it of a copy of
+    that."""
+    if result.get(_RECORDING) is not None:
+        result[_RECORDING] = recording
+
+
 class PutBack:
     """Gives `owner`, which performed a result, what only this has keys for as its recording has it;
     bones and properties that are gone meanwhile have none. Others stay as the artist set them.

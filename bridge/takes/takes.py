@@ -22,9 +22,8 @@ from ..marked_strips import MARKS
 from ..properties.action import action_settings
 from ..properties.settings import HangtimeSettings, settings_of
 from ..properties.stances import move_empties
-from ..rows.copying import (
-    copy_settings,
-)
+from ..rows.copying import copy_settings
+from ..unkeyed import note_copied
 
 OF_RECORDING = ("repairs", "findings", "examined", "examination_stale", "feet")
 NOT_KEPT = ("marks", "adapted", "source", MARKS.name, *OF_RECORDING)
@@ -88,6 +87,7 @@ def _adopt(
         copy.use_fake_user = result.use_fake_user
         made = action_settings(copy)
         made.recording = own.get(made.recording, action)
+        note_copied(copy, action)
         made.maker, made.owned = armature if result in listed else None, True
     settings.adapted = own.get(settings.adapted, settings.adapted)
     settings.source = own.get(settings.source, settings.source)

@@ -120,6 +120,23 @@ def test_a_copied_character_has_a_slot_and_a_result_of_its_own(armature: bpy.typ
 
 
 @with_slots
+def test_a_copied_result_gives_back_what_its_own_recording_has_no_keys_for(
+    armature: bpy.types.Object,
+) -> None:
+    take, path = current_action(armature), 'pose.bones["finger"].scale'
+    lifted(armature, 0.1)
+    copy = duplicate(armature)
+    action, own = copy.animation_data.action, current_action(copy)
+    of_original = fcurves.holder_in(take, fcurves.slot_identifier(armature))
+    for curves in (of_original, fcurves.holder_in(own, None)):
+        fcurves.ensured(curves, path, 1, "").keyframe_points.insert(10.0, 1.5)
+    bpy.context.scene.frame_set(10)
+    assert copy.pose.bones["finger"].scale.y == pytest.approx(1.5)
+    show(copy, action)
+    assert copy.pose.bones["finger"].scale.y == pytest.approx(1.0)
+
+
+@with_slots
 def test_a_copied_character_has_its_slots_results_whatever_came_after_them(
     armature: bpy.types.Object,
 ) -> None:
