@@ -80,7 +80,9 @@ def lines(t):
     held, normal = np.isfinite(t["contact_normal"]).all(axis=-1), t["contact_normal"]
     pressed = (pushes * normal).sum(axis=-1)
     along = np.linalg.norm(pushes - pressed[..., None] * normal, axis=-1)
-    beyond = (along - t["contact_friction"] * pressed)[held & np.isfinite(t["contact_friction"])]
+    friction = t["contact_friction"]
+    coned = held & np.isfinite(friction)  # a grip has no cone
+    beyond = along[coned] - friction[coned] * pressed[coned]
     yield "force outside its friction cone", beyond.max(initial=0.0), 0.01, "BW"
     off_touch = pushes[~held & (t["contact_names"] != UNSEEN)]
     yield "force on what does not touch", np.abs(off_touch).max(initial=0.0), 1e-6, "BW"
