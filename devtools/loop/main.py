@@ -17,6 +17,7 @@ from ...bridge.armature.incremental import complete
 from ...bridge.armature.read import read_recording
 from ...bridge.files.import_clip import import_clip
 from ...bridge.loops.write_loop import Loop, write_loop
+from ...bridge.properties.attached_groups import ensure_groups
 from ...bridge.rows.choices import LoopRoot
 from ...solver.data.recording import BEYOND
 from ...solver.loops.loop_report import loop_report
@@ -54,6 +55,7 @@ def main(argv: list[str]) -> int:
 def solved(run: Run) -> tuple[AdaptationResult, Played]:
     """The solved cycle, and an armature in an empty scene that plays it."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
+    ensure_groups()
     armature = import_clip(find(run.file)).armature
     recording = read_recording(armature, first=run.first, last=run.last, beyond=BEYOND)
     result = solve(measure(recording, run.problem), StageClock())
