@@ -17,6 +17,7 @@ from ....bridge.accessors import armature_data, present
 from ....bridge.armature.incremental import complete
 from ....bridge.armature.read import record
 from ....bridge.controls.refusals import require_posable
+from ....bridge.properties.attached_groups import ensure_groups
 from ....bridge.recipe.result import ResultOptions
 from ....bridge.takes.plan import AdaptedMotion
 from ....bridge.takes.write_result import write_result
@@ -54,6 +55,7 @@ def measured(case: ControlCase) -> ControlResult:
     """The figures' first edit on a control rig."""
     take = performer()
     with quiet():
+        ensure_groups()
         rig = case.build(take)
         recording = record(rig, take.frames)
     parts = {recording.bones[s.bone].name: s.part for s in map_anatomy(recording.bones)}
