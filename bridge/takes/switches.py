@@ -2,7 +2,8 @@
 frame shows one half thrown.
 
 A curve is switched where one or two of the steps between keys on neighbouring whole frames change
-it, and not those beside them: a blink is thrown and thrown back. More steps are a motion.
+it by most of what it ever changes, and those beside them not at all: a blink is thrown and thrown
+back. More steps are a motion, and smaller ones a recording's last digits.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from .take_time import TakeTime
 
 EPSILON = 1e-4  # frames
 MOST_STEPS = 2
+THROWN = 0.5  # share of a curve's range
 _LEVEL = 1e-6  # share of the largest value, or of 1, by which values are still the same
 
 
@@ -22,7 +24,7 @@ def on_whole_frames(at: FloatArray, values: FloatArray, time: TakeTime) -> Float
     neighbouring whole frames there, too. Where durations shrink such that one has no room between
     the keys beside it, it is where the take's time has it."""
     found = time.to_result(at)
-    for first, last in _runs(_changing(values) & _neighbours(at)):
+    for first, last in _runs(values, _changing(values) & _neighbours(at)):
         before = found[first - 1] if first else -np.inf
         after = found[last + 1] if last + 1 < len(at) else np.inf
         middle = (found[first] + found[last]) / 2.0
@@ -41,7 +43,7 @@ def on_whole_frames(at: FloatArray, values: FloatArray, time: TakeTime) -> Float
 def switched(values: FloatArray) -> BoolArray:
     """(T - 1,) whether a curve of values (T,) on whole frames is switched between each two."""
     found = np.zeros(len(values) - 1, dtype=bool)
-    for first, last in _runs(_changing(values)):
+    for first, last in _runs(values, _changing(values)):
         found[first:last] = True
     return found
 
@@ -57,8 +59,14 @@ def _neighbours(at: FloatArray) -> BoolArray:
     return np.asarray(whole[1:] & whole[:-1] & (np.abs(np.diff(at) - 1.0) < EPSILON))
 
 
-def _runs(steps: BoolArray) -> list[tuple[int, int]]:
-    """First and last key of each few steps (n - 1,) in a row."""
+def _runs(values: FloatArray, steps: BoolArray) -> list[tuple[int, int]]:
+    """First and last key of each few steps (n - 1,) in a row by which a curve of values (n,) is
+    switched."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], steps, [False]])))
     runs = zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
-    return [(first, last) for first, last in runs if last - first <= MOST_STEPS]
+    least = THROWN * float(np.ptp(values)) if len(values) else 0.0
+    return [
+        (first, last)
+        for first, last in runs
+        if last - first <= MOST_STEPS and np.ptp(values[first : last + 1]) >= least
+    ]

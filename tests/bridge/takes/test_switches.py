@@ -47,5 +47,11 @@ def test_a_switch_without_room_keeps_the_order_of_keys(
 
 
 def test_values_are_switched_in_one_or_two_steps() -> None:
-    values = np.array([0.0, 0.0, 1.0, 1.0, 0.0, 1.0, 1.0, 2.0, 3.0, 4.0, 4.0])
+    values = np.array([0.0, 0.0, 1.0, 1.0, 0.0, 1.0, 1.0, 0.7, 0.3, 0.0, 0.0])
     assert np.flatnonzero(switched(values)).tolist() == [1, 3, 4]
+
+
+def test_the_last_digits_of_a_slow_motion_are_no_switch() -> None:
+    """As of recordings in files, which hold few decimals."""
+    values = np.round(0.01 * np.sin(np.linspace(0.0, 1.5, 60)), 3)
+    assert not switched(values).any()
